@@ -1,0 +1,17 @@
+//! Decides how a vehicle crosses an unsignalized intersection.
+//!
+//! `no_std`, no allocation, no `unsafe`, no panic, no recursion. SI units
+//! throughout (m, s, rad, m/s, m/s²); headings counter-clockwise from +x; arc
+//! length `s` along a [`Route`]; a vehicle's reference point is the centre of
+//! its footprint.
+#![no_std]
+#![forbid(unsafe_code)]
+
+pub mod conflict;
+pub mod geometry;
+pub mod route;
+pub mod svo;
+
+pub use conflict::ConflictKind;
+pub use geometry::{Footprint, Point, Pose};
+pub use route::{Route, RouteError};

@@ -1,0 +1,194 @@
+//! A vehicle's path through the intersection: a polyline of fixed capacity, addressed by arc length.
+
+use crate::geometry::{Point, Pose};
+use heapless::Vec;
+
+/// A polyline of at most `P` points, addressed by arc length `s` in metres from its first point.
+///
+/// Before its start and past its end a route goes on straight, so every finite
+/// `s` has a pose. Consecutive points are at least [`Route::MIN_SPACING`] apart.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Route<const P: usize> {
+    points: Vec<Point, P>,
+    /// Arc length at each point; strictly increasing, first is 0.
+    arc: Vec<f32, P>,
+}
+
+/// Why a polyline is not a route.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RouteError {
+    /// Fewer than two points that are apart from each other.
+    TooFewPoints,
+    /// More points than the route's capacity.
+    TooManyPoints,
+    /// A coordinate is NaN, infinite, or more than [`Route::MAX_COORDINATE`] from the origin.
+    OutOfRange,
+}
+
+impl core::fmt::Display for RouteError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::TooFewPoints => "a route needs two points that are apart",
+            Self::TooManyPoints => "more points than the route's capacity",
+            Self::OutOfRange => "a coordinate is not a number or too far from the origin",
+        })
+    }
+}
+
+impl core::error::Error for RouteError {}
+
+impl<const P: usize> Route<P> {
+    /// Points closer than this (m) to the one before them are dropped: they carry no direction.
+    pub const MIN_SPACING: f32 = 0.01;
+    /// Largest coordinate (m). Beyond it `f32` no longer resolves millimetres.
+    pub const MAX_COORDINATE: f32 = 8192.0;
+
+    /// A route through `points`, in order.
+    ///
+    /// Cost: O(points). Never panics.
+    ///
+    /// # Errors
+    /// See [`RouteError`].
+    pub fn new(points: impl IntoIterator<Item = Point>) -> Result<Self, RouteError> {
+        let mut route = Self {
+            points: Vec::new(),
+            arc: Vec::new(),
+        };
+        for point in points {
+            route.push(point)?;
+        }
+        if route.points.len() < 2 {
+            return Err(RouteError::TooFewPoints);
+        }
+        Ok(route)
+    }
+
+    fn push(&mut self, point: Point) -> Result<(), RouteError> {
+        let in_range = |c: f32| c.abs() <= Self::MAX_COORDINATE;
+        if !(in_range(point.x) && in_range(point.y)) {
+            return Err(RouteError::OutOfRange);
+        }
+        let s = match (self.points.last(), self.arc.last()) {
+            (Some(&last), Some(&s)) => {
+                let step = last.distance(point);
+                if step < Self::MIN_SPACING {
+                    return Ok(());
+                }
+                s + step
+            }
+            _ => 0.0,
+        };
+        self.points
+            .push(point)
+            .map_err(|_| RouteError::TooManyPoints)?;
+        self.arc.push(s).map_err(|_| RouteError::TooManyPoints)
+    }
+
+    /// Length in metres; always positive.
+    #[must_use]
+    pub fn length(&self) -> f32 {
+        self.arc.last().copied().unwrap_or(0.0)
+    }
+
+    /// The points of the polyline, at least two.
+    #[must_use]
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// The arc length (m) at each of [`Route::points`].
+    #[must_use]
+    pub fn arc(&self) -> &[f32] {
+        &self.arc
+    }
+
+    /// The pose at arc length `s` (m), straight on beyond both ends.
+    ///
+    /// Cost: O(log points). Never panics.
+    #[must_use]
+    pub fn pose(&self, s: f32) -> Pose {
+        let after = self.arc.partition_point(|&a| a <= s);
+        let i = after.clamp(1, self.points.len().max(2) - 1);
+        match (
+            self.points.get(i - 1),
+            self.points.get(i),
+            self.arc.get(i - 1),
+            self.arc.get(i),
+        ) {
+            (Some(&a), Some(&b), Some(&sa), Some(&sb)) => {
+                let direction = (b - a) * (1.0 / (sb - sa));
+                Pose {
+                    position: a + direction * (s - sa),
+                    direction,
+                }
+            }
+            // Unreachable: `new` keeps two points at least.
+            _ => Pose {
+                position: Point::default(),
+                direction: Point::new(1.0, 0.0),
+            },
+        }
+    }
+
+    /// Arc length (m) of the point of the polyline nearest to `point`, in [0, length].
+    ///
+    /// Cost: O(points). Never panics.
+    #[must_use]
+    pub fn project(&self, point: Point) -> f32 {
+        let mut best = (f32::INFINITY, 0.0);
+        let ends = self.points.iter().zip(self.points.iter().skip(1));
+        let arcs = self.arc.iter().zip(self.arc.iter().skip(1));
+        for ((&a, &b), (&sa, &sb)) in ends.zip(arcs) {
+            let direction = (b - a) * (1.0 / (sb - sa));
+            let along = (point - a).dot(direction).clamp(0.0, sb - sa);
+            let distance = (a + direction * along).distance(point);
+            if distance < best.0 {
+                best = (distance, sa + along);
+            }
+        }
+        best.1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn corner() -> Route<4> {
+        Route::new([
+            Point::new(0.0, 0.0),
+            Point::new(10.0, 0.0),
+            Point::new(10.0, 5.0),
+        ])
+        .unwrap()
+    }
+
+    #[test]
+    fn poses_follow_the_polyline_and_go_straight_beyond_it() {
+        let route = corner();
+        assert_eq!(route.length(), 15.0);
+        assert_eq!(route.pose(4.0).position, Point::new(4.0, 0.0));
+        assert_eq!(route.pose(12.0).position, Point::new(10.0, 2.0));
+        assert_eq!(route.pose(-1.0).position, Point::new(-1.0, 0.0));
+        assert_eq!(route.pose(16.0).position, Point::new(10.0, 6.0));
+        assert_eq!(route.pose(12.0).direction, Point::new(0.0, 1.0));
+    }
+
+    #[test]
+    fn projection_inverts_pose() {
+        let route = corner();
+        for s in [0.0, 3.0, 10.0, 14.5, 15.0] {
+            assert!((route.project(route.pose(s).position) - s).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn bad_polylines_are_refused() {
+        let at = |x: f32| Point::new(x, 0.0);
+        let error = |points: &[Point]| Route::<3>::new(points.iter().copied()).unwrap_err();
+        assert_eq!(error(&[at(0.0), at(0.001)]), RouteError::TooFewPoints);
+        assert_eq!(error(&[at(0.0), at(f32::NAN)]), RouteError::OutOfRange);
+        let many = [at(0.0), at(1.0), at(2.0), at(3.0)];
+        assert_eq!(error(&many), RouteError::TooManyPoints);
+    }
+}
