@@ -1,0 +1,102 @@
+//! Motion along a route over one step: constant acceleration, no going backwards.
+
+use crate::driver::State;
+use crate::encounter::STEP;
+
+/// Accelerations are clamped to ± this (m/s²), as in the paper.
+pub const MAX_ACCELERATION: f32 = 3.0;
+
+/// `acceleration` (m/s²) within ±[`MAX_ACCELERATION`]; NaN becomes full braking.
+#[must_use]
+#[inline]
+pub fn clamp_acceleration(acceleration: f32) -> f32 {
+    if acceleration >= MAX_ACCELERATION {
+        MAX_ACCELERATION
+    } else if acceleration >= -MAX_ACCELERATION {
+        acceleration
+    } else {
+        -MAX_ACCELERATION
+    }
+}
+
+/// The state one [`STEP`] after `state` under a constant `acceleration` in m/s²
+/// (zero-order hold): s + vΔt + ½aΔt², v + aΔt.
+///
+/// A vehicle that would come to rest within the step does so where it would,
+/// v²/2|a| further on, and stays; it never rolls backwards. The acceleration is
+/// taken as it is: recorded ones may exceed what drivers may ask for
+/// ([`clamp_acceleration`]). Finite for finite input with `v` ≥ 0; never panics.
+#[must_use]
+#[inline]
+pub fn advance(state: State, acceleration: f32) -> State {
+    let State { s, v } = state;
+    let end = v + acceleration * STEP;
+    // Both cases are computed and one is selected, so that a loop over vehicles vectorises.
+    let driven = (v + end) * (0.5 * STEP);
+    let stopped = v * v / (-2.0 * acceleration);
+    if end >= 0.0 {
+        State {
+            s: s + driven,
+            v: end,
+        }
+    } else {
+        State {
+            s: s + stopped,
+            v: 0.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn a_vehicle_brakes_to_rest_in_its_stopping_distance() {
+        // 10 m/s at −3 m/s² stops after 16.67 m and 3.33 s, in the middle of a step.
+        let mut state = State { s: 0.0, v: 10.0 };
+        for _ in 0..40 {
+            state = advance(state, -3.0);
+        }
+        assert!((state.s - 100.0 / 6.0).abs() < 1e-4, "{state:?}");
+        assert_eq!(state.v, 0.0);
+    }
+
+    #[test]
+    fn a_vehicle_at_rest_stays_at_rest() {
+        let rest = State { s: 3.0, v: 0.0 };
+        for acceleration in [-3.0, -0.0, 0.0] {
+            assert_eq!(advance(rest, acceleration), rest);
+        }
+    }
+
+    #[test]
+    fn no_request_leaves_the_range_of_accelerations() {
+        for (asked, given) in [
+            (f32::NAN, -3.0),
+            (f32::INFINITY, 3.0),
+            (f32::NEG_INFINITY, -3.0),
+            (1.5, 1.5),
+        ] {
+            assert_eq!(clamp_acceleration(asked), given);
+        }
+    }
+
+    proptest! {
+        /// Against the closed form in `f64`, which integrates to the moment of rest.
+        #[test]
+        fn one_step_is_the_exact_integral(
+            s in -200.0_f32..200.0, v in 0.0_f32..30.0, a in -8.0_f32..8.0,
+        ) {
+            let (dt, v64, a64) = (f64::from(STEP), f64::from(v), f64::from(a));
+            let moving = if v64 + a64 * dt < 0.0 { -v64 / a64 } else { dt };
+            let exact_s = f64::from(s) + v64 * moving + 0.5 * a64 * moving * moving;
+            let exact_v = v64 + a64 * moving;
+            let next = advance(State { s, v }, a);
+            prop_assert!((f64::from(next.s) - exact_s).abs() < 5e-5);
+            prop_assert!((f64::from(next.v) - exact_v).abs() < 5e-6);
+            prop_assert!(next.v >= 0.0 && next.s >= s);
+        }
+    }
+}
