@@ -8,10 +8,20 @@
 #![forbid(unsafe_code)]
 
 pub mod conflict;
+pub mod features;
 pub mod geometry;
+pub mod mlp;
+pub mod pair;
+pub mod policy;
 pub mod route;
 pub mod svo;
+pub mod weights;
 
 pub use conflict::ConflictKind;
+pub use features::FeatureSet;
 pub use geometry::{Footprint, Point, Pose};
+pub use mlp::Mlp;
+pub use pair::{Leader, Pair, Part, Party, RightOfWay};
+pub use policy::Policy;
 pub use route::{Route, RouteError};
+pub use weights::{Perspective, Weights, WeightsError};

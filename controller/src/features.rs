@@ -1,0 +1,227 @@
+//! What the network is told about a [`Pair`], and how it is scaled.
+
+use crate::conflict::ConflictKind;
+use crate::pair::{Leader, Pair, Party, RightOfWay};
+
+/// Most features that a set has.
+pub const MAX_FEATURES: usize = 18;
+
+/// A normalised feature is limited to ± this, so that no input whatsoever overflows the network.
+pub const LIMIT: f32 = 8.0;
+
+/// Arrival times (s) and gaps (m) are counted up to here: beyond it nothing depends on them.
+pub const HORIZON: f32 = 30.0;
+
+/// Speed (m/s) below which an arrival time is that of a vehicle at this speed.
+pub const CREEP: f32 = 0.5;
+
+/// Braking (m/s²) of the stopping distance in the `Route` features: the paper's limit.
+const BRAKING: f32 = 3.0;
+
+/// Which features a network is told; the order of the values is part of the weights file's format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum FeatureSet {
+    /// The paper's eight: x, y (m, map frame), speed (m/s) and heading (rad) of the ego, then of the other.
+    Raw,
+    /// Fourteen that do not depend on the site's frame:
+    /// 0, 1: the ego's distance to the conflict point (m), speed (m/s);
+    /// 2, 3: the other's;
+    /// 4, 5: arrival times of both at their present speeds (s, within ± [`HORIZON`]);
+    /// 6: the ego's SVO (rad);
+    /// 7, 8: metres to spare between each one's stopping distance and the conflict point;
+    /// 9, 10: 1 if the routes cross, 1 if they merge, else 0;
+    /// 11: right of way: 1 the ego's, −1 the other's, 0 unsettled;
+    /// 12, 13: sine of the turn still to come of each, positive to the left.
+    Route,
+    /// `Route`, then gap (m, at most [`HORIZON`]) and speed (m/s) of the ego's leader and of the
+    /// other's; a leader that is not there is far ahead and as fast as its follower.
+    Traffic,
+}
+
+impl FeatureSet {
+    /// Every set, in the order of their codes in the weights file.
+    pub const ALL: [Self; 3] = [Self::Raw, Self::Route, Self::Traffic];
+
+    /// Number of features, at most [`MAX_FEATURES`].
+    #[must_use]
+    pub const fn count(self) -> usize {
+        match self {
+            Self::Raw => 8,
+            Self::Route => 14,
+            Self::Traffic => 18,
+        }
+    }
+
+    /// Name on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Raw => "raw",
+            Self::Route => "route",
+            Self::Traffic => "traffic",
+        }
+    }
+
+    /// The features of `pair`, in their own units; the places after [`FeatureSet::count`] are zero.
+    ///
+    /// Cost: constant, with at most two `atan2`. Never panics; finite for finite input.
+    #[must_use]
+    pub fn of(self, pair: &Pair) -> [f32; MAX_FEATURES] {
+        let mut features = [0.0; MAX_FEATURES];
+        match self {
+            Self::Raw => fill(&mut features, raw(pair)),
+            Self::Route => fill(&mut features, route(pair)),
+            Self::Traffic => fill(
+                &mut features,
+                route(pair)
+                    .into_iter()
+                    .chain(leader(&pair.ego))
+                    .chain(leader(&pair.other)),
+            ),
+        }
+        features
+    }
+}
+
+fn fill(features: &mut [f32; MAX_FEATURES], values: impl IntoIterator<Item = f32>) {
+    for (place, value) in features.iter_mut().zip(values) {
+        *place = value;
+    }
+}
+
+fn raw(pair: &Pair) -> [f32; 8] {
+    let heading = |p: &Party| libm::atan2f(p.pose.direction.y, p.pose.direction.x);
+    let (a, b) = (&pair.ego, &pair.other);
+    let (at, bt) = (a.pose.position, b.pose.position);
+    [
+        at.x,
+        at.y,
+        a.speed,
+        heading(a),
+        bt.x,
+        bt.y,
+        b.speed,
+        heading(b),
+    ]
+}
+
+fn route(pair: &Pair) -> [f32; 14] {
+    let flag = |kind| if pair.kind == kind { 1.0 } else { 0.0 };
+    let (a, b) = (&pair.ego, &pair.other);
+    [
+        a.distance,
+        a.speed,
+        b.distance,
+        b.speed,
+        arrival(a),
+        arrival(b),
+        pair.svo(),
+        spare(a),
+        spare(b),
+        flag(ConflictKind::Crossing),
+        flag(ConflictKind::Merging),
+        match pair.right_of_way {
+            RightOfWay::Ego => 1.0,
+            RightOfWay::Other => -1.0,
+            RightOfWay::Unsettled => 0.0,
+        },
+        a.pose.direction.cross(a.exit),
+        b.pose.direction.cross(b.exit),
+    ]
+}
+
+/// Seconds to the conflict point at the present speed.
+fn arrival(party: &Party) -> f32 {
+    let speed = if party.speed > CREEP {
+        party.speed
+    } else {
+        CREEP
+    };
+    within(party.distance / speed, HORIZON)
+}
+
+/// Metres between where the vehicle can stop and the conflict point; negative if it cannot stop before it.
+fn spare(party: &Party) -> f32 {
+    party.distance - party.speed * party.speed * (0.5 / BRAKING)
+}
+
+fn leader(party: &Party) -> [f32; 2] {
+    let Leader { gap, speed } = party.leader.unwrap_or(Leader {
+        gap: HORIZON,
+        speed: party.speed,
+    });
+    [within(gap, HORIZON), speed]
+}
+
+/// `value` limited to ± `limit`; NaN becomes −`limit`. Comparisons, not `f32::min` and `max`, whose
+/// result on ±0 and NaN differs between processors.
+#[must_use]
+pub(crate) fn within(value: f32, limit: f32) -> f32 {
+    if value > limit {
+        limit
+    } else if value >= -limit {
+        value
+    } else {
+        -limit
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pair::testing::pair;
+
+    #[test]
+    fn every_set_fills_its_length() {
+        for set in FeatureSet::ALL {
+            let features = set.of(&pair());
+            assert!(features[set.count()..].iter().all(|&f| f == 0.0));
+            assert!(features.iter().all(|f| f.is_finite()));
+        }
+    }
+
+    #[test]
+    fn route_features_have_their_documented_places() {
+        let f = FeatureSet::Route.of(&pair());
+        assert_eq!(f[..4], [12.0, 6.0, 20.0, 8.0]);
+        assert_eq!(f[4..6], [2.0, 2.5]);
+        assert_eq!(f[7..9], [12.0 - 6.0, 20.0 - 64.0 / 6.0]);
+        assert_eq!(f[9..12], [1.0, 0.0, -1.0]);
+        assert_eq!(f[12..14], [1.0, 0.0]);
+    }
+
+    #[test]
+    fn raw_features_are_the_papers() {
+        let f = FeatureSet::Raw.of(&pair());
+        assert_eq!(f[..4], [-12.0, 0.0, 6.0, 0.0]);
+        assert_eq!(f[4..7], [20.0, 3.0, 8.0]);
+        assert_eq!(f[7], core::f32::consts::PI);
+    }
+
+    #[test]
+    fn a_missing_leader_is_far_and_as_fast() {
+        let mut pair = pair();
+        pair.ego.leader = Some(Leader {
+            gap: 4.0,
+            speed: 1.0,
+        });
+        let f = FeatureSet::Traffic.of(&pair);
+        assert_eq!(f[14..], [4.0, 1.0, HORIZON, 8.0]);
+    }
+
+    #[test]
+    fn a_vehicle_at_rest_has_a_bounded_arrival_time() {
+        let mut pair = pair();
+        pair.ego.speed = 0.0;
+        assert_eq!(FeatureSet::Route.of(&pair)[4], 24.0);
+        pair.ego.distance = -200.0;
+        assert_eq!(FeatureSet::Route.of(&pair)[4], -HORIZON);
+    }
+
+    #[test]
+    fn limits_hold_for_what_is_not_a_number() {
+        assert_eq!(within(f32::NAN, 8.0), -8.0);
+        assert_eq!(within(f32::INFINITY, 8.0), 8.0);
+        assert_eq!(within(-3.0, 8.0), -3.0);
+    }
+}
