@@ -18,7 +18,8 @@ pub enum Role {
 }
 
 /// What a vehicle does at the intersection.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Manoeuvre {
     /// Turns left: heading changes by +50° to +130°.
     Left,

@@ -1,11 +1,14 @@
 //! Encounters at unsignalized intersections, and the drivers that are judged on them.
 #![forbid(unsafe_code)]
 
+pub mod data;
 pub mod driver;
 pub mod encounter;
 pub mod kinematics;
+pub mod output;
 pub mod overlap;
 
+pub use data::Dataset;
 pub use driver::{Driver, DriverFactory, State, View};
 pub use encounter::{Encounter, EncounterId, Manoeuvre, Participant, Role, Sample, SimRoute};
 pub use kinematics::{advance, clamp_acceleration};

@@ -1,0 +1,114 @@
+//! Where a site's files are.
+
+use super::error::{DataError, Problem};
+use super::site::Site;
+use super::tracks::Recording;
+use super::{generic, interaction};
+use std::path::{Path, PathBuf};
+
+/// What a folder holds.
+pub(crate) struct Found {
+    pub(crate) recordings: Vec<RecordingFile>,
+    pub(crate) passed_over: Vec<PathBuf>,
+}
+
+/// A file that is to be read.
+pub(crate) struct RecordingFile {
+    path: PathBuf,
+    number: u16,
+}
+
+impl RecordingFile {
+    pub(crate) fn read(&self) -> Result<Recording, DataError> {
+        let tracks = if starts_with(&self.path, "vehicle_tracks") {
+            interaction::read(&self.path)?
+        } else {
+            generic::read(&self.path)?
+        };
+        Ok(Recording {
+            file: self.number,
+            tracks,
+        })
+    }
+}
+
+/// The recordings of `site` in or below `dir`.
+pub(crate) fn find(dir: &Path, site: &Site) -> Result<Found, DataError> {
+    if dir.is_file() {
+        return Ok(sort(vec![dir.to_owned()]));
+    }
+    let places = [
+        folder_of(dir, site),
+        folder_of(&dir.join("recorded_trackfiles"), site),
+    ];
+    for place in places.into_iter().flatten().chain([dir.to_owned()]) {
+        let found = sort(csv_files(&place)?);
+        if !found.recordings.is_empty() {
+            return Ok(found);
+        }
+    }
+    let site = site.name.clone();
+    Err(DataError::new(dir, Problem::NoRecordings { site }))
+}
+
+/// The folder in `dir` that is called like the site, or ends in `_` and the site's name.
+fn folder_of(dir: &Path, site: &Site) -> Option<PathBuf> {
+    let exact = dir.join(&site.folder);
+    if exact.is_dir() {
+        return Some(exact);
+    }
+    let ending = format!("_{}", site.name);
+    let mut matching: Vec<PathBuf> = std::fs::read_dir(dir)
+        .ok()?
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| path.is_dir() && path.to_string_lossy().ends_with(&ending))
+        .collect();
+    matching.sort();
+    matching.into_iter().next()
+}
+
+fn csv_files(dir: &Path) -> Result<Vec<PathBuf>, DataError> {
+    let unreadable = |error| DataError::new(dir, Problem::Unreadable(error));
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(dir).map_err(unreadable)? {
+        let path = entry.map_err(unreadable)?.path();
+        if path.extension().is_some_and(|extension| extension == "csv") {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+/// Pedestrians are passed over; where there are INTERACTION files, nothing else is read.
+fn sort(files: Vec<PathBuf>) -> Found {
+    let of_pedestrians = |path: &PathBuf| starts_with(path, "pedestrian_tracks");
+    let (passed_over, mut files): (Vec<_>, Vec<_>) = files.into_iter().partition(of_pedestrians);
+    if files.iter().any(|path| starts_with(path, "vehicle_tracks")) {
+        files.retain(|path| starts_with(path, "vehicle_tracks"));
+    }
+    let numbered = files.into_iter().zip(0..);
+    let mut recordings: Vec<RecordingFile> = numbered
+        .map(|(path, place)| RecordingFile {
+            number: number(&path).unwrap_or(place),
+            path,
+        })
+        .collect();
+    recordings.sort_by_key(|file| file.number);
+    Found {
+        recordings,
+        passed_over,
+    }
+}
+
+fn starts_with(path: &Path, beginning: &str) -> bool {
+    path.file_name()
+        .is_some_and(|name| name.to_string_lossy().starts_with(beginning))
+}
+
+/// The digits at the end of a file's stem, as in `vehicle_tracks_007.csv`.
+fn number(path: &Path) -> Option<u16> {
+    let stem = path.file_stem()?.to_string_lossy();
+    let digits = stem.trim_end_matches(|c: char| c.is_ascii_digit()).len();
+    stem[digits..].parse().ok()
+}

@@ -1,0 +1,123 @@
+//! Output files appear whole or not at all.
+//!
+//! A file is written under a temporary name in its own folder and renamed when
+//! it is complete, so an interrupted run, a full disk or a failing writer
+//! leaves the old file, if there was one, and nothing half-written.
+
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// An output file could not be written.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot write {}: {}", .path.display(), reason(.source))]
+pub struct OutputError {
+    /// The file that was to be written.
+    pub path: PathBuf,
+    /// What the operating system said.
+    pub source: io::Error,
+}
+
+impl OutputError {
+    /// What the user can do about it, in one sentence.
+    #[must_use]
+    pub fn mend(&self) -> &'static str {
+        match self.source.kind() {
+            io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+                "free some space, or name a file on another disk; the previous file, if any, is untouched"
+            }
+            io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
+                "name a file in a folder that you may write to"
+            }
+            _ => "check the path; the previous file, if any, is untouched",
+        }
+    }
+}
+
+fn reason(source: &io::Error) -> String {
+    match source.kind() {
+        io::ErrorKind::StorageFull => "the disk is full".to_owned(),
+        io::ErrorKind::QuotaExceeded => "the disk quota is used up".to_owned(),
+        _ => source.to_string(),
+    }
+}
+
+/// Writes the file at `path` through `fill`, creating its folder if need be.
+///
+/// Until `fill` has succeeded and everything is on its way to the disk, `path`
+/// is not touched; then it is replaced in one step.
+///
+/// # Errors
+/// When the folder cannot be made, `fill` fails, or the disk refuses.
+pub fn write(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), OutputError> {
+    replace(path, fill).map_err(|source| OutputError {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+fn replace(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let folder = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    std::fs::create_dir_all(folder)?;
+    let file = temporary_in(folder)?;
+    let mut writer = BufWriter::new(file);
+    fill(&mut writer)?;
+    let file = writer.into_inner()?;
+    file.as_file().sync_data()?;
+    file.persist(path)?;
+    Ok(())
+}
+
+fn temporary_in(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".cede-").suffix(".part");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // As any new file: readable by whom the umask allows, not by the owner alone.
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(folder)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn files_in(folder: &Path) -> Vec<String> {
+        let name = |entry: io::Result<std::fs::DirEntry>| {
+            entry.unwrap().file_name().to_string_lossy().into_owned()
+        };
+        std::fs::read_dir(folder).unwrap().map(name).collect()
+    }
+
+    #[test]
+    fn a_file_appears_whole_in_a_new_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("deep/er/table.csv");
+        write(&path, |out| out.write_all(b"whole")).unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"whole");
+        assert_eq!(files_in(path.parent().unwrap()), ["table.csv"]);
+    }
+
+    #[test]
+    fn a_failing_writer_leaves_the_old_file_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("table.csv");
+        std::fs::write(&path, "old").unwrap();
+        let full = |out: &mut dyn Write| {
+            out.write_all(b"half")?;
+            Err(io::Error::from(io::ErrorKind::StorageFull))
+        };
+        let error = write(&path, full).unwrap_err();
+        assert!(error.to_string().ends_with("table.csv: the disk is full"));
+        assert!(error.mend().starts_with("free some space"));
+        assert_eq!(std::fs::read(&path).unwrap(), b"old");
+        assert_eq!(files_in(folder.path()), ["table.csv"]);
+    }
+}

@@ -1,0 +1,87 @@
+//! The recorded encounters of INTERACTION's EP0 and MA; skipped where the recordings are absent.
+
+use cede_sim::data::Split;
+use cede_sim::{Dataset, Encounter, Role, State, advance, clamp_acceleration};
+use std::path::PathBuf;
+
+fn recordings() -> Option<PathBuf> {
+    let default = || {
+        PathBuf::from(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../shared/interaction"
+        ))
+    };
+    let dir = std::env::var_os("CEDE_INTERACTION_DIR").map_or_else(default, PathBuf::from);
+    if dir.is_dir() {
+        return Some(dir);
+    }
+    println!(
+        "skipped: no recordings at {}; set CEDE_INTERACTION_DIR",
+        dir.display()
+    );
+    None
+}
+
+fn load(site: &str) -> Option<Dataset> {
+    Some(Dataset::load(&recordings()?, site).unwrap_or_else(|error| panic!("{error}")))
+}
+
+fn encounters_per_file(dataset: &Dataset) -> Vec<usize> {
+    dataset
+        .folds()
+        .iter()
+        .map(|fold| fold.held_out.len())
+        .collect()
+}
+
+#[test]
+fn the_paper_s_site_has_its_known_number_of_pairs_in_each_file() {
+    let Some(dataset) = load("EP0") else { return };
+    assert_eq!(encounters_per_file(&dataset), [7, 44, 16, 38, 66, 80, 30]);
+    assert_eq!(dataset.split(Split::Train).count(), 215);
+    assert_eq!(dataset.split(Split::Validation).count(), 66);
+}
+
+/// The floor of the simulator's own error: what is left when recorded accelerations are replayed.
+#[test]
+fn replayed_accelerations_repeat_the_record() {
+    for site in ["EP0", "MA"] {
+        let Some(dataset) = load(site) else { return };
+        let replays: Vec<_> = dataset.encounters.iter().map(|e| (e, replay(e))).collect();
+        let n = replays.len() as f32;
+        let right = replays.iter().filter(|(e, r)| r.0 == Some(e.first)).count() as f32;
+        let error = |(e, r): &(&Encounter, _)| relative(e, r);
+        let error = replays.iter().map(error).sum::<f32>() / n;
+        println!(
+            "{site}: n = {n}, priority {}, length error {error}",
+            right / n
+        );
+        assert!(right / n >= 0.99, "{site}: {right} of {n}");
+        assert!(error <= 0.03, "{site}: {error}");
+    }
+}
+
+fn relative(encounter: &Encounter, replay: &(Option<Role>, u32)) -> f32 {
+    encounter.steps.abs_diff(replay.1) as f32 / encounter.steps as f32
+}
+
+/// Who arrives first when the recorded accelerations drive, and after how many steps.
+fn replay(encounter: &Encounter) -> (Option<Role>, u32) {
+    let judged = &encounter.participants[..2];
+    let mut states = [0, 1].map(|i| State {
+        s: judged[i].record[0].s,
+        v: judged[i].record[0].v,
+    });
+    for step in 1..=2 * encounter.steps {
+        for (state, participant) in states.iter_mut().zip(judged) {
+            let sample = participant.record.get(step as usize - 1);
+            *state = advance(*state, clamp_acceleration(sample.map_or(0.0, |s| s.a)));
+        }
+        for (role, i) in [(Role::Left, 0), (Role::Other, 1)] {
+            if states[i].s >= judged[i].conflict_s {
+                return (Some(role), step);
+            }
+        }
+    }
+    (None, 2 * encounter.steps)
+}
