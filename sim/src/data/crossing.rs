@@ -95,7 +95,7 @@ mod tests {
         let b: Vec<Point> = (0..100).map(wave).collect();
         for i in 0..99 {
             let x = f64::from(i) + 0.5;
-            let found = first_crossing(&[[x, -0.4], [x, 0.7]], &b);
+            let found = first_crossing(&[[x, -0.5], [x, 0.5]], &b);
             assert_eq!(found, Some([x, 0.0]), "segment {i}");
         }
     }
