@@ -7,6 +7,9 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+#[cfg(test)]
+extern crate std;
+
 pub mod conflict;
 pub mod features;
 pub mod geometry;
@@ -14,8 +17,10 @@ pub mod mlp;
 pub mod pair;
 pub mod policy;
 pub mod route;
+pub mod scene;
 pub mod svo;
 pub mod weights;
+pub mod zone;
 
 pub use conflict::ConflictKind;
 pub use features::FeatureSet;
@@ -24,4 +29,6 @@ pub use mlp::Mlp;
 pub use pair::{Leader, Pair, Part, Party, RightOfWay};
 pub use policy::Policy;
 pub use route::{Route, RouteError};
+pub use scene::{Meeting, Path, Scene, SceneError};
 pub use weights::{Perspective, Weights, WeightsError};
+pub use zone::{Interval, Zone};
