@@ -1,6 +1,25 @@
 //! The one trait behind which human models, baselines, replay and the controller sit.
+//!
+//! A [`DriverFactory`] makes one [`Driver`] for each vehicle and episode; a
+//! [`Baseline`] names the rule-based ones and fits those that learn from
+//! recorded encounters.
 
-use crate::encounter::Encounter;
+mod baseline;
+mod constant;
+mod idm;
+mod logistic;
+mod nearer_first;
+mod replay;
+mod right_of_way;
+
+pub use baseline::{Baseline, FitError};
+pub use constant::{InitialSpeed, MeanSpeed};
+pub use idm::Idm;
+pub use logistic::Logistic;
+pub use nearer_first::NearerFirst;
+pub use replay::Replay;
+
+use crate::encounter::{Encounter, Participant};
 
 /// State of a vehicle along its route.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -24,10 +43,39 @@ pub struct View<'a> {
     pub states: &'a [Option<State>],
 }
 
+impl View<'_> {
+    /// State of participant `index`; `None` while it is not there.
+    #[must_use]
+    pub fn state(&self, index: usize) -> Option<State> {
+        self.states.get(index).copied().flatten()
+    }
+
+    /// The driver's own vehicle and its state; `None` if it is not there.
+    #[must_use]
+    pub fn own(&self) -> Option<(&Participant, State)> {
+        self.participant(self.ego)
+    }
+
+    /// The judged vehicle that a judged vehicle meets, and its state; `None` if it is not there.
+    #[must_use]
+    pub fn rival(&self) -> Option<(&Participant, State)> {
+        self.participant(1_usize.checked_sub(self.ego)?)
+    }
+
+    fn participant(&self, index: usize) -> Option<(&Participant, State)> {
+        Some((self.encounter.participants.get(index)?, self.state(index)?))
+    }
+}
+
 /// Drives one vehicle through one encounter.
 pub trait Driver {
     /// The acceleration (m/s²) for the step that begins now. The simulation clamps it to [−3, 3].
     fn accelerate(&mut self, view: &View<'_>) -> f32;
+
+    /// Whether a safety shield overruled the driver in the step that it decided last.
+    fn shielded(&self) -> bool {
+        false
+    }
 }
 
 /// Makes drivers of one kind, one for each vehicle and encounter.

@@ -17,6 +17,11 @@ pub enum Role {
     Other = 1,
 }
 
+impl Role {
+    /// Both, in the order of [`Encounter::participants`].
+    pub const BOTH: [Self; 2] = [Self::Left, Self::Other];
+}
+
 /// What a vehicle does at the intersection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -74,6 +79,15 @@ pub struct Participant {
     pub record: Vec<Sample>,
 }
 
+impl Participant {
+    /// What was recorded at `step` of the encounter; `None` before it appears and after its track's end.
+    #[must_use]
+    pub fn recorded(&self, step: u32) -> Option<Sample> {
+        let index = step.checked_sub(self.appears)?;
+        self.record.get(index as usize).copied()
+    }
+}
+
 /// Two vehicles whose routes conflict, as recorded, and the traffic around them.
 #[derive(Clone, Debug)]
 pub struct Encounter {
@@ -93,4 +107,12 @@ pub struct Encounter {
     pub pet: f32,
     /// The two judged vehicles, [`Role::Left`] first, then the bystanders.
     pub participants: Vec<Participant>,
+}
+
+impl Encounter {
+    /// The judged vehicle in `role`.
+    #[must_use]
+    pub fn judged(&self, role: Role) -> &Participant {
+        &self.participants[role as usize]
+    }
 }

@@ -4,9 +4,15 @@
 pub mod data;
 pub mod driver;
 pub mod encounter;
+pub mod episode;
+pub mod evaluate;
+#[cfg(test)]
+mod fixture;
 pub mod kinematics;
+pub mod metrics;
 pub mod output;
 pub mod overlap;
+pub mod statistics;
 
 pub use data::Dataset;
 pub use driver::{Driver, DriverFactory, State, View};

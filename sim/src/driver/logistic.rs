@@ -1,0 +1,80 @@
+//! Who goes first, by a logistic model of the initial state.
+
+use super::nearer_first::Decided;
+use super::{Driver, DriverFactory};
+use crate::encounter::{Encounter, Manoeuvre, Role};
+use crate::statistics::LogisticRegression;
+use std::collections::HashMap;
+
+/// Distances to the conflict point and speeds of both: d, v, d̂, v̂.
+const INPUTS: usize = 4;
+
+/// The vehicle that a logistic model on the initial (d, v, d̂, v̂) expects first goes; the other stops.
+///
+/// One model for each manoeuvre of the vehicle that the left-turner meets.
+#[derive(Clone, Debug)]
+pub struct Logistic {
+    models: HashMap<Manoeuvre, LogisticRegression<INPUTS>>,
+    /// For a manoeuvre that did not occur in training.
+    overall: LogisticRegression<INPUTS>,
+}
+
+impl Logistic {
+    /// Fits the models; `None` if `training` is empty.
+    #[must_use]
+    pub fn fit(training: &[&Encounter]) -> Option<Self> {
+        let mut samples: HashMap<Manoeuvre, Vec<_>> = HashMap::new();
+        let mut all = Vec::with_capacity(training.len());
+        for encounter in training {
+            let sample = (inputs(encounter), encounter.first == Role::Left);
+            let manoeuvre = encounter.judged(Role::Other).manoeuvre;
+            samples.entry(manoeuvre).or_default().push(sample);
+            all.push(sample);
+        }
+        Some(Self {
+            overall: LogisticRegression::fit(&all)?,
+            models: samples
+                .into_iter()
+                .filter_map(|(manoeuvre, s)| Some((manoeuvre, LogisticRegression::fit(&s)?)))
+                .collect(),
+        })
+    }
+
+    /// Who goes first, by the initial state of `encounter`.
+    #[must_use]
+    pub fn first(&self, encounter: &Encounter) -> Role {
+        let model = self
+            .models
+            .get(&encounter.judged(Role::Other).manoeuvre)
+            .unwrap_or(&self.overall);
+        if model.probability(&inputs(encounter)) >= 0.5 {
+            Role::Left
+        } else {
+            Role::Other
+        }
+    }
+}
+
+fn inputs(encounter: &Encounter) -> [f64; INPUTS] {
+    let [[d, v], [other_d, other_v]] = Role::BOTH.map(|role| {
+        let vehicle = encounter.judged(role);
+        let (s, v) = vehicle
+            .record
+            .first()
+            .map_or((0.0, 0.0), |sample| (sample.s, sample.v));
+        [f64::from(vehicle.conflict_s - s), f64::from(v)]
+    });
+    [d, v, other_d, other_v]
+}
+
+impl DriverFactory for Logistic {
+    fn name(&self) -> &str {
+        "logistic"
+    }
+
+    fn driver(&self, encounter: &Encounter, _: usize, _: u64) -> Box<dyn Driver> {
+        Box::new(Decided {
+            first: self.first(encounter),
+        })
+    }
+}

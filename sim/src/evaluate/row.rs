@@ -1,0 +1,142 @@
+//! A row of the table: one driver on one split.
+
+use super::Drive;
+use crate::encounter::EncounterId;
+use crate::episode::End;
+use crate::metrics::HORIZONS;
+use crate::statistics::{Mean, Share};
+use serde::Serialize;
+use std::collections::BTreeSet;
+
+/// A time to collision below this (s) is critical.
+const CRITICAL_TTC: f64 = 1.5;
+
+/// A 95 % confidence interval: low and high end.
+pub type Interval = [f64; 2];
+
+/// A row of the table. Shares are fractions; what cannot be told from the episodes is `None`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// Name of the driver.
+    pub driver: String,
+    /// Name of the split.
+    pub split: String,
+    /// `joint` or `ego`.
+    pub mode: String,
+    /// `conflict` or `cleared`.
+    pub until: String,
+    /// `off` or `on`.
+    pub shield: String,
+    /// Episodes.
+    pub n: usize,
+    /// Different encounters among them: in ego mode each gives two episodes.
+    pub encounters: usize,
+    /// Share of episodes in which the recorded vehicle arrived first.
+    pub priority_accuracy: Option<f64>,
+    /// Its Wilson interval.
+    pub priority_accuracy_interval: Option<Interval>,
+    /// Mean of |l − l_GT| / l_GT.
+    pub episode_length_error: Option<f64>,
+    /// Its interval by the normal approximation.
+    pub episode_length_error_interval: Option<Interval>,
+    /// Mean of |l − l_GT| in seconds.
+    pub episode_length_error_s: Option<f64>,
+    /// Episodes that ended in a collision.
+    pub collisions: usize,
+    /// Wilson interval of their share.
+    pub collision_share_interval: Option<Interval>,
+    /// Episodes that ended in a time-out.
+    pub time_outs: usize,
+    /// Wilson interval of their share.
+    pub time_out_share_interval: Option<Interval>,
+    /// Root mean square position error in metres after 1 s.
+    pub position_rmse_1s: Option<f64>,
+    /// The same after 3 s.
+    pub position_rmse_3s: Option<f64>,
+    /// The same after 5 s.
+    pub position_rmse_5s: Option<f64>,
+    /// The same over whole episodes.
+    pub position_rmse: Option<f64>,
+    /// Root mean square error of the SVO in radians.
+    pub svo_rmse: Option<f64>,
+    /// Mean of the PET's error in seconds.
+    pub pet_error_s: Option<f64>,
+    /// Share of episodes with a time to collision below 1.5 s.
+    pub critical_ttc_share: Option<f64>,
+    /// Root mean square of the jerk in m/s³.
+    pub jerk_rms: Option<f64>,
+    /// Share of steps in which the shield overruled the driver, mean over episodes.
+    pub shielded_steps: Option<f64>,
+}
+
+/// The words that name a row.
+#[derive(Clone, Copy, Debug)]
+pub struct Label<'a> {
+    /// Name of the driver.
+    pub driver: &'a str,
+    /// Name of the split.
+    pub split: &'a str,
+    /// `joint` or `ego`.
+    pub mode: &'a str,
+    /// `conflict` or `cleared`.
+    pub until: &'a str,
+    /// `off` or `on`.
+    pub shield: &'a str,
+}
+
+impl Row {
+    /// Gathers `drives` under `label`.
+    #[must_use]
+    pub fn of(label: Label<'_>, drives: &[Drive<'_>]) -> Self {
+        let ended = |end| Share::of(drives.iter().map(|drive| drive.episode.end == end));
+        let measures = || drives.iter().map(|drive| &drive.measures);
+        let priority = Share::of(measures().map(|m| m.correct));
+        let (collisions, time_outs) = (ended(End::Collision), ended(End::TimeOut));
+        let length = Mean::of(measures().map(|m| m.length_error));
+        let position = |i: usize| rms(measures().filter_map(|m| m.position_error[i]));
+        let encounters: BTreeSet<&EncounterId> =
+            drives.iter().map(|drive| &drive.encounter.id).collect();
+        Self {
+            driver: label.driver.to_owned(),
+            split: label.split.to_owned(),
+            mode: label.mode.to_owned(),
+            until: label.until.to_owned(),
+            shield: label.shield.to_owned(),
+            n: drives.len(),
+            encounters: encounters.len(),
+            priority_accuracy: priority.fraction(),
+            priority_accuracy_interval: priority.interval(),
+            episode_length_error: length.map(|mean| mean.mean),
+            episode_length_error_interval: length.map(Mean::interval),
+            episode_length_error_s: mean(measures().map(|m| m.length_error_s)),
+            collisions: collisions.count,
+            collision_share_interval: collisions.interval(),
+            time_outs: time_outs.count,
+            time_out_share_interval: time_outs.interval(),
+            position_rmse_1s: position(0),
+            position_rmse_3s: position(1),
+            position_rmse_5s: position(2),
+            position_rmse: rms(measures().map(|m| m.position_rmse)),
+            svo_rmse: rms(measures().filter_map(|m| m.svo_rmse)),
+            pet_error_s: mean(measures().filter_map(|m| m.pet_error)),
+            critical_ttc_share: Share::of(
+                measures().map(|m| m.min_ttc.is_some_and(|ttc| ttc < CRITICAL_TTC)),
+            )
+            .fraction(),
+            jerk_rms: rms(measures().filter_map(|m| m.jerk)),
+            shielded_steps: mean(measures().map(|m| m.shielded)),
+        }
+    }
+}
+
+// The fields above name the horizons.
+const _: () = assert!(matches!(HORIZONS, [1, 3, 5]));
+
+fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    Mean::of(values).map(|mean| mean.mean)
+}
+
+/// The root of the mean square of root mean squares: every episode weighs the same.
+fn rms(values: impl Iterator<Item = f64>) -> Option<f64> {
+    mean(values.map(|x| x * x)).map(f64::sqrt)
+}

@@ -1,0 +1,37 @@
+//! Time to collision: when the two would touch if both kept their speeds.
+
+use crate::driver::State;
+use crate::encounter::{Encounter, Role, STEP};
+use crate::overlap::OrientedBox;
+use cede_controller::Footprint;
+
+/// Times to collision beyond this many seconds count as none.
+pub const HORIZON: f32 = 5.0;
+
+/// Two footprints whose centres are further apart than this (m) cannot touch.
+const REACH: f32 = 5.4;
+
+/// The least time to collision (s) over `states`, in steps of 0.1 s; 0 if they touch.
+pub(super) fn least(encounter: &Encounter, states: &[[State; 2]]) -> Option<f64> {
+    let mut least: Option<u32> = None;
+    for &now in states {
+        // Only what is sooner than the least so far matters.
+        let horizon = least.unwrap_or((HORIZON / STEP) as u32 + 1);
+        if let Some(ahead) = (0..horizon).find(|&ahead| touch(encounter, now, ahead)) {
+            least = Some(ahead);
+        }
+    }
+    least.map(|steps| f64::from(steps) * f64::from(STEP))
+}
+
+/// Whether the two touch `ahead` steps after `states` at constant speed.
+fn touch(encounter: &Encounter, states: [State; 2], ahead: u32) -> bool {
+    let time = ahead as f32 * STEP;
+    let [left, other] = Role::BOTH.map(|role| {
+        let state = states[role as usize];
+        encounter.judged(role).route.pose(state.s + state.v * time)
+    });
+    left.position.distance(other.position) < REACH
+        && OrientedBox::new(left, Footprint::PAPER)
+            .overlaps(&OrientedBox::new(other, Footprint::PAPER))
+}

@@ -1,0 +1,7 @@
+//! The little statistics that the tables need.
+
+mod interval;
+mod logistic;
+
+pub use interval::{Mean, Share};
+pub use logistic::LogisticRegression;
