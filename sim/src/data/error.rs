@@ -71,8 +71,13 @@ pub enum Problem {
     #[error("no rows")]
     Empty,
     /// The header lacks a column.
-    #[error("the header lacks the column `{0}`")]
-    MissingColumn(&'static str),
+    #[error("the header lacks the column `{name}`")]
+    MissingColumn {
+        /// The column.
+        name: &'static str,
+        /// What the header should be.
+        mend: &'static str,
+    },
     /// A pedestrian file where a vehicle file belongs.
     #[error("these are tracks of pedestrians: no heading, no length, no width")]
     Pedestrians,
@@ -87,9 +92,15 @@ pub enum Problem {
     /// The file ends in the middle of its last line.
     #[error("the file ends in the middle of this line")]
     Truncated,
+    /// A field without a value.
+    #[error("the field is empty")]
+    EmptyField,
     /// A field that is not a number.
-    #[error("`{0}` is not a number that can stand here")]
+    #[error("`{0}` is not a number")]
     NotANumber(String),
+    /// A field that is not a whole number in range.
+    #[error("`{0}` is not a whole number from 0 on")]
+    NotWhole(String),
     /// NaN or infinite.
     #[error("{0} is not a finite number")]
     NotFinite(f64),
@@ -146,9 +157,7 @@ impl Problem {
                 "name the folder that holds the site's vehicle_tracks_NNN.csv, or its parent, and the site with --site"
             }
             Self::Empty => "restore the file from its source",
-            Self::MissingColumn(_) => {
-                "an INTERACTION file starts with track_id,frame_id,timestamp_ms,agent_type,x,y,vx,vy,psi_rad,length,width; a generic one with at least track,t,x,y"
-            }
+            Self::MissingColumn { mend, .. } => mend,
             Self::Pedestrians => {
                 "name it pedestrian_tracks_NNN.csv, and it is passed over; only vehicles are judged"
             }
@@ -156,9 +165,11 @@ impl Problem {
                 "give the row one field for each column of the header; check for stray commas"
             }
             Self::Truncated => "copy the file anew from its source, or delete its last line",
+            Self::EmptyField => "fill in the value, or delete the row",
             Self::NotANumber(_) => {
-                "write a plain decimal number in SI units, with a point, as in 1012.35; identifiers and milliseconds are whole numbers"
+                "write a plain decimal number in SI units, with a point, as in 1012.35"
             }
+            Self::NotWhole(_) => "write a plain whole number, without sign, point or letters",
             Self::NotFinite(_) => "delete the row, or fill it by interpolation",
             Self::TooFar(_) => {
                 "subtract a common offset from all coordinates of the site and its map"

@@ -12,12 +12,15 @@
 //! Other columns are passed over; rows of different tracks may be mixed.
 
 use super::error::DataError;
-use super::table::{Place, Table};
+use super::table::{Format, Place, Table};
 use super::tracks::{RawState, Row, STEP_MS, Track, Tracks};
 use serde::Deserialize;
 use std::path::Path;
 
-const COLUMNS: [&str; 4] = ["track", "t", "x", "y"];
+const FORMAT: Format = Format {
+    required: &["track", "t", "x", "y"],
+    mend: "the header needs track,t,x,y (s, m) and may have vx,vy,heading,length,width; INTERACTION's files are told by their name, vehicle_tracks_NNN.csv",
+};
 
 /// Below this speed (m/s) the motion does not tell the heading.
 const CREEP: f64 = 0.5;
@@ -42,7 +45,7 @@ struct Fields {
 pub fn read(path: &Path) -> Result<Vec<Track>, DataError> {
     let mut tracks = Tracks::default();
     let (mut has_velocity, mut has_heading) = (true, true);
-    Table::read(path)?.for_each(&COLUMNS, |place, fields: Fields| {
+    Table::read(path)?.for_each(&FORMAT, |place, fields: Fields| {
         has_velocity &= fields.vx.is_some() && fields.vy.is_some();
         has_heading &= fields.heading.is_some();
         tracks.push(path, &checked(place, &fields)?)

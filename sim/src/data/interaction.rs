@@ -1,22 +1,25 @@
 //! INTERACTION's `vehicle_tracks_NNN.csv` (Zhan et al., 2019): one row for each vehicle and 100 ms.
 
 use super::error::{DataError, Problem};
-use super::table::{Place, Table};
+use super::table::{Format, Place, Table};
 use super::tracks::{RawState, Row, Track, Tracks};
 use serde::Deserialize;
 use std::path::Path;
 
-const COLUMNS: [&str; 9] = [
-    "track_id",
-    "timestamp_ms",
-    "x",
-    "y",
-    "vx",
-    "vy",
-    "psi_rad",
-    "length",
-    "width",
-];
+const FORMAT: Format = Format {
+    required: &[
+        "track_id",
+        "timestamp_ms",
+        "x",
+        "y",
+        "vx",
+        "vy",
+        "psi_rad",
+        "length",
+        "width",
+    ],
+    mend: "the header should be track_id,frame_id,timestamp_ms,agent_type,x,y,vx,vy,psi_rad,length,width",
+};
 
 /// A row as it stands in the file; `frame_id` repeats `timestamp_ms` and is not read.
 #[derive(Deserialize)]
@@ -52,7 +55,7 @@ pub fn read(path: &Path) -> Result<Vec<Track>, DataError> {
     let table = Table::read(path)?;
     let mut tracks = Tracks::default();
     table
-        .for_each(&COLUMNS, |place, fields: Fields| {
+        .for_each(&FORMAT, |place, fields: Fields| {
             if fields.agent_type == AgentType::PedestrianOrBicycle {
                 return Ok(());
             }
@@ -85,7 +88,13 @@ fn checked(place: Place<'_>, fields: &Fields) -> Result<Row, DataError> {
 
 /// A pedestrian file lacks the last three columns; say so rather than name the first of them.
 fn pedestrians_or(table: &Table<'_>, error: DataError) -> DataError {
-    let lacks_heading = matches!(error.problem, Problem::MissingColumn("psi_rad"));
+    let lacks_heading = matches!(
+        error.problem,
+        Problem::MissingColumn {
+            name: "psi_rad",
+            ..
+        }
+    );
     if lacks_heading && table.mentions("pedestrian") {
         return DataError::new(&error.path, Problem::Pedestrians);
     }

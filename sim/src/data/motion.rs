@@ -10,8 +10,6 @@ use cede_controller::{Point, RouteError};
 const SPACING: f64 = 0.2;
 /// A route may cut its track's corners by this much (m).
 const TOLERANCE: f64 = 0.01;
-/// No vehicle covers more (m) in a step; the search for its place on its route ends there.
-const REACH: f64 = 5.0;
 /// Length (m) of the route of a vehicle that never moves.
 const PARKED: f64 = 1.0;
 /// Rate (1/s) at which the replayed position is drawn to the recorded one.
@@ -22,20 +20,18 @@ const PULL: f32 = 2.0;
 /// # Errors
 /// When a coordinate is out of a route's range; the readers let none through.
 pub(crate) fn motion(states: &[RawState]) -> Result<(SimRoute, Vec<Sample>), RouteError> {
-    let route = route(states)?;
-    let mut samples = along(&route, states);
-    accelerations(&mut samples);
-    Ok((route, samples))
-}
-
-fn route(states: &[RawState]) -> Result<SimRoute, RouteError> {
     let path = spaced(states);
     let mut tolerance = TOLERANCE;
     loop {
-        let points = simplified(&path, tolerance);
-        match SimRoute::new(points.into_iter().map(single)) {
+        let kept = simplified(&path, tolerance);
+        match SimRoute::new(kept.iter().map(|vertex| single(vertex.position))) {
             Err(RouteError::TooManyPoints) => tolerance *= 2.0,
-            other => return other,
+            Err(error) => return Err(error),
+            Ok(route) => {
+                let mut samples = along(&route, &kept, states);
+                accelerations(&mut samples);
+                return Ok((route, samples));
+            }
         }
     }
 }
@@ -44,21 +40,32 @@ fn single(point: [f64; 2]) -> Point {
     Point::new(point[0] as f32, point[1] as f32)
 }
 
+/// A point of a path, and which of the recorded states was there.
+#[derive(Clone, Copy)]
+struct Vertex {
+    index: usize,
+    position: [f64; 2],
+}
+
 /// The positions, at least [`SPACING`] apart; a parked vehicle's lead straight ahead.
-fn spaced(states: &[RawState]) -> Vec<[f64; 2]> {
-    let mut path: Vec<[f64; 2]> = Vec::new();
-    for state in states {
+fn spaced(states: &[RawState]) -> Vec<Vertex> {
+    let mut path: Vec<Vertex> = Vec::new();
+    for (index, state) in states.iter().enumerate() {
         let position = state.position();
         if path
             .last()
-            .is_none_or(|&last| distance(last, position) >= SPACING)
+            .is_none_or(|last| distance(last.position, position) >= SPACING)
         {
-            path.push(position);
+            path.push(Vertex { index, position });
         }
     }
-    if let (&[[x, y]], Some(state)) = (path.as_slice(), states.first()) {
+    if let ([only], Some(state)) = (path.as_slice(), states.first()) {
+        let [x, y] = only.position;
         let (sin, cos) = state.heading.sin_cos();
-        path.push([x + PARKED * cos, y + PARKED * sin]);
+        path.push(Vertex {
+            index: states.len(),
+            position: [x + PARKED * cos, y + PARKED * sin],
+        });
     }
     path
 }
@@ -68,20 +75,24 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 /// Ramer–Douglas–Peucker: fewest points by which no dropped one is farther than `tolerance` away.
-fn simplified(path: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
+fn simplified(path: &[Vertex], tolerance: f64) -> Vec<Vertex> {
     let mut keep = vec![false; path.len()];
-    let mut open = vec![(0, path.len() - 1)];
+    let mut open = vec![(0, path.len().saturating_sub(1))];
     while let Some((from, to)) = open.pop() {
-        (keep[from], keep[to]) = (true, true);
-        let off = |i: usize| distance_to_segment(path[i], path[from], path[to]);
+        let at = |i: usize| path[i].position;
+        let off = |i: usize| distance_to_segment(at(i), at(from), at(to));
         let farthest = (from + 1..to).max_by(|&a, &b| off(a).total_cmp(&off(b)));
         if let Some(i) = farthest.filter(|&i| off(i) > tolerance) {
-            open.push((from, i));
-            open.push((i, to));
+            open.extend([(from, i), (i, to)]);
+        }
+        for end in [from, to] {
+            if let Some(keep) = keep.get_mut(end) {
+                *keep = true;
+            }
         }
     }
     let kept = path.iter().zip(keep).filter(|(_, keep)| *keep);
-    kept.map(|(&point, _)| point).collect()
+    kept.map(|(&vertex, _)| vertex).collect()
 }
 
 fn distance_to_segment(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
@@ -97,47 +108,36 @@ fn distance_to_segment(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 /// Arc length and speed along the route; never backwards. Accelerations are still 0.
-fn along(route: &SimRoute, states: &[RawState]) -> Vec<Sample> {
-    let mut s = 0.0;
-    let sample = |state: &RawState| {
-        s = project(route, state.position(), s);
-        let direction = route.pose(s as f32).direction;
-        let v = state.vx * f64::from(direction.x) + state.vy * f64::from(direction.y);
-        Sample {
-            s: s as f32,
-            v: v.max(0.0) as f32,
-            a: 0.0,
-        }
-    };
-    states.iter().map(sample).collect()
-}
-
-/// Arc length of the place on the route nearest to `p`, from `s` to [`REACH`] beyond it.
 ///
-/// A route may come back close to itself; the bounded search keeps to the branch that is driven.
-fn project(route: &SimRoute, p: [f64; 2], s: f64) -> f64 {
-    let arc: Vec<f64> = route.arc().iter().map(|&a| f64::from(a)).collect();
-    let first = arc.partition_point(|&a| a <= s).clamp(1, arc.len() - 1) - 1;
-    let mut best = (f64::INFINITY, s);
-    for i in first..arc.len() - 1 {
-        if arc[i] > s + REACH {
-            break;
+/// A state is projected on the segment whose ends the vehicle passed just
+/// before and after it, not on the nearest: a route may come back close to
+/// itself. Past the last vertex the route goes on straight.
+fn along(route: &SimRoute, kept: &[Vertex], states: &[RawState]) -> Vec<Sample> {
+    let mut samples: Vec<Sample> = Vec::with_capacity(states.len());
+    let mut segment = 0;
+    for (i, state) in states.iter().enumerate() {
+        while segment + 2 < kept.len() && kept[segment + 1].index <= i {
+            segment += 1;
         }
-        let [a, b] = [route.points()[i], route.points()[i + 1]];
-        let (ax, ay) = (f64::from(a.x), f64::from(a.y));
-        let length = arc[i + 1] - arc[i];
-        let (dx, dy) = (
-            (f64::from(b.x) - ax) / length,
-            (f64::from(b.y) - ay) / length,
-        );
-        let ahead = (p[0] - ax) * dx + (p[1] - ay) * dy;
-        let ahead = ahead.clamp((s - arc[i]).clamp(0.0, length), length);
-        let off = distance(p, [ax + dx * ahead, ay + dy * ahead]);
-        if off < best.0 {
-            best = (off, arc[i] + ahead);
-        }
+        let direction = route
+            .pose(0.5 * (route.arc()[segment] + route.arc()[segment + 1]))
+            .direction;
+        let (ux, uy) = (f64::from(direction.x), f64::from(direction.y));
+        let [ax, ay] = kept[segment].position;
+        let ahead = ((state.x - ax) * ux + (state.y - ay) * uy) as f32;
+        let ahead = if segment + 2 < kept.len() {
+            ahead.min(route.arc()[segment + 1] - route.arc()[segment])
+        } else {
+            ahead
+        };
+        let last = samples.last().map_or(0.0, |sample| sample.s);
+        samples.push(Sample {
+            s: last.max(route.arc()[segment] + ahead),
+            v: (state.vx * ux + state.vy * uy).max(0.0) as f32,
+            a: 0.0,
+        });
     }
-    best.1
+    samples
 }
 
 /// Sets the accelerations that, replayed by [`advance`], follow the samples.

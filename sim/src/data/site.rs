@@ -147,8 +147,9 @@ impl Site {
     }
 
     fn parse(path: &Path, text: &str) -> Result<Self, DataError> {
-        let site: Self = toml::from_str(text)
-            .map_err(|error| DataError::new(path, Problem::Site(error.to_string())))?;
+        let site: Self = toml::from_str(text).map_err(|error| {
+            DataError::new(path, Problem::Site(error.to_string().trim_end().to_owned()))
+        })?;
         site.check()
             .map_err(|problem| DataError::new(path, Problem::Site(problem)))?;
         Ok(site)

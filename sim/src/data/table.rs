@@ -11,6 +11,14 @@ pub(crate) struct Table<'p> {
     bytes: Vec<u8>,
 }
 
+/// A file format: what its header must hold.
+pub(crate) struct Format {
+    /// Columns without which a row makes no sense.
+    pub(crate) required: &'static [&'static str],
+    /// What to tell whoever left one out.
+    pub(crate) mend: &'static str,
+}
+
 /// Where a row is, for messages.
 #[derive(Clone, Copy)]
 pub(crate) struct Place<'p> {
@@ -79,10 +87,10 @@ impl<'p> Table<'p> {
         Ok(Self { path, bytes })
     }
 
-    /// Hands every row to `each`; `required` are the columns without which a row makes no sense.
+    /// Hands every row to `each`.
     pub(crate) fn for_each<R: for<'r> Deserialize<'r>>(
         &self,
-        required: &[&'static str],
+        format: &Format,
         mut each: impl FnMut(Place<'_>, R) -> Result<(), DataError>,
     ) -> Result<(), DataError> {
         let path = self.path;
@@ -94,8 +102,9 @@ impl<'p> Table<'p> {
             .byte_headers()
             .map_err(|error| self.unreadable(error))?
             .clone();
-        self.check_header(&header, required)?;
+        self.check_header(&header, format)?;
         let ended = self.bytes.ends_with(b"\n");
+        let end = self.bytes.len() as u64;
         let mut record = ByteRecord::new();
         let mut rows = 0_u64;
         while reader
@@ -105,7 +114,7 @@ impl<'p> Table<'p> {
             let place = Place {
                 path,
                 line: record.position().map_or(0, Position::line),
-                cut: !ended && reader.is_done(),
+                cut: !ended && reader.position().byte() >= end,
             };
             each(place, typed(place, &record, &header)?)?;
             rows += 1;
@@ -123,18 +132,18 @@ impl<'p> Table<'p> {
             .any(|window| window == word.as_bytes())
     }
 
-    fn check_header(
-        &self,
-        header: &ByteRecord,
-        required: &[&'static str],
-    ) -> Result<(), DataError> {
+    fn check_header(&self, header: &ByteRecord, format: &Format) -> Result<(), DataError> {
         if header.is_empty() {
             return Err(DataError::new(self.path, Problem::Empty));
         }
         let has = |name: &str| header.iter().any(|column| column == name.as_bytes());
-        match required.iter().find(|name| !has(name)) {
+        match format.required.iter().find(|name| !has(name)) {
             None => Ok(()),
-            Some(name) => Err(DataError::new(self.path, Problem::MissingColumn(name)).at_line(1)),
+            Some(name) => {
+                let mend = format.mend;
+                let problem = Problem::MissingColumn { name, mend };
+                Err(DataError::new(self.path, problem).at_line(1))
+            }
         }
     }
 
@@ -166,7 +175,19 @@ fn typed<R: for<'r> Deserialize<'r>>(
         let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
         let field = field.and_then(|i| usize::try_from(i).ok());
         let at = |record: &ByteRecord| field.and_then(|i| record.get(i)).map(text);
-        let error = place.error(Problem::NotANumber(at(record).unwrap_or_default()));
-        error.in_column(&at(header).unwrap_or_default())
+        let value = at(record).unwrap_or_default();
+        let problem = match error.kind() {
+            _ if value.is_empty() => Problem::EmptyField,
+            csv::ErrorKind::Deserialize { err, .. } if is_whole(err) => Problem::NotWhole(value),
+            _ => Problem::NotANumber(value),
+        };
+        place
+            .error(problem)
+            .in_column(&at(header).unwrap_or_default())
     })
+}
+
+/// Whether a whole number should have stood there.
+fn is_whole(error: &csv::DeserializeError) -> bool {
+    matches!(error.kind(), csv::DeserializeErrorKind::ParseInt(_))
 }
