@@ -1,7 +1,7 @@
 //! What users read when a recording is not as it should be.
 
 use cede_sim::Dataset;
-use cede_sim::data::{DataError, generic, interaction};
+use cede_sim::data::{DataError, generic, interaction, lanelet};
 use insta::assert_snapshot;
 use std::path::Path;
 
@@ -276,5 +276,27 @@ fn site_descriptions() {
     assert_snapshot!(read(unknown_arm), @r"
     X.toml: not a site description: there is no arm `A`
     compare with sim/src/data/sites/EP0.toml
+    ");
+}
+
+#[test]
+fn maps() {
+    let map = |content| message(lanelet::read, "X.osm", content);
+    assert_snapshot!(map("<osm><node id='1'"), @r"
+    X.osm:1: not a Lanelet2 map: the root node was opened but never closed
+    restore the map from its source, or remove it: it serves for drawing only
+    ");
+    assert_snapshot!(map("<osm>\n<node id='1' lat='0.1' lon='east'/>\n</osm>"), @r"
+    X.osm:2: not a Lanelet2 map: `east` is not a number of degrees
+    restore the map from its source, or remove it: it serves for drawing only
+    ");
+    assert_snapshot!(map("<osm>\n<way id='2'><nd ref='1'/></way>\n</osm>"), @r"
+    X.osm:2: not a Lanelet2 map: there is no node 1
+    restore the map from its source, or remove it: it serves for drawing only
+    ");
+    let lanelet = "<osm>\n<relation id='3'><tag k='type' v='lanelet'/></relation>\n</osm>";
+    assert_snapshot!(map(lanelet), @r"
+    X.osm:2: not a Lanelet2 map: a lanelet without a left bound
+    restore the map from its source, or remove it: it serves for drawing only
     ");
 }

@@ -1,6 +1,7 @@
 //! The recorded encounters of INTERACTION's EP0 and MA; skipped where the recordings are absent.
 
 use cede_sim::data::Split;
+use cede_sim::data::lanelet::LineKind;
 use cede_sim::{Dataset, Encounter, Role, State, advance, clamp_acceleration};
 use std::path::PathBuf;
 
@@ -84,4 +85,39 @@ fn replay(encounter: &Encounter) -> (Option<Role>, u32) {
         }
     }
     (None, 2 * encounter.steps)
+}
+
+#[test]
+fn the_map_lies_under_the_tracks() {
+    for (site, stop_lines) in [("EP0", 5), ("MA", 6)] {
+        let Some(dataset) = load(site) else { return };
+        let map = dataset.map.unwrap();
+        let of_kind = |kind| map.lines.iter().filter(move |line| line.kind == kind);
+        assert_eq!(of_kind(LineKind::Stop).count(), stop_lines, "{site}");
+        // Vehicles drive in lanes: a shift or a wrong scale of the map would show here.
+        let states = dataset
+            .recordings
+            .iter()
+            .flat_map(|r| &r.tracks)
+            .flat_map(|t| &t.states);
+        let states: Vec<_> = states.step_by(997).collect();
+        let on_lane = |p: [f64; 2]| map.lanes.iter().any(|lane| inside(lane, p));
+        let in_lane = states.iter().filter(|s| on_lane([s.x, s.y])).count();
+        let share = in_lane as f64 / states.len() as f64;
+        println!(
+            "{site}: {share} of {} positions lie in a lane",
+            states.len()
+        );
+        assert!(share > 0.95, "{site}: {share}");
+    }
+}
+
+/// Whether a ray from `p` to the east meets the outline an odd number of times.
+fn inside(outline: &[[f64; 2]], p: [f64; 2]) -> bool {
+    let ends = outline.iter().zip(outline.iter().cycle().skip(1));
+    let met = ends.filter(|(a, b)| {
+        let spans = (a[1] > p[1]) != (b[1] > p[1]);
+        spans && p[0] < a[0] + (b[0] - a[0]) * (p[1] - a[1]) / (b[1] - a[1])
+    });
+    met.count() % 2 == 1
 }

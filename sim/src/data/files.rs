@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Found {
     pub(crate) recordings: Vec<RecordingFile>,
     pub(crate) passed_over: Vec<PathBuf>,
+    pub(crate) map: Option<PathBuf>,
 }
 
 /// A file that is to be read.
@@ -35,7 +36,11 @@ impl RecordingFile {
 /// The recordings of `site` in or below `dir`.
 pub(crate) fn find(dir: &Path, site: &Site) -> Result<Found, DataError> {
     if dir.is_file() {
-        return Ok(sort(vec![dir.to_owned()]));
+        let map = dir.parent().and_then(|folder| map_of(folder, site));
+        return Ok(Found {
+            map,
+            ..sort(vec![dir.to_owned()])
+        });
     }
     let places = [
         folder_of(dir, site),
@@ -44,7 +49,8 @@ pub(crate) fn find(dir: &Path, site: &Site) -> Result<Found, DataError> {
     for place in places.into_iter().flatten().chain([dir.to_owned()]) {
         let found = sort(csv_files(&place)?);
         if !found.recordings.is_empty() {
-            return Ok(found);
+            let map = map_of(&place, site);
+            return Ok(Found { map, ..found });
         }
     }
     let site = site.name.clone();
@@ -65,6 +71,18 @@ fn folder_of(dir: &Path, site: &Site) -> Option<PathBuf> {
         .collect();
     matching.sort();
     matching.into_iter().next()
+}
+
+/// The map in the folder of the recordings, beside it, or where INTERACTION has it.
+fn map_of(recordings: &Path, site: &Site) -> Option<PathBuf> {
+    let recordings = recordings.canonicalize().ok()?;
+    let folder = recordings.file_name()?.to_string_lossy().into_owned();
+    let places = ["", "..", "../maps", "../../maps"].map(|way| recordings.join(way));
+    let names = [folder, site.folder.clone(), site.name.clone()].map(|name| name + ".osm");
+    let candidates = places
+        .iter()
+        .flat_map(|place| names.iter().map(move |name| place.join(name)));
+    candidates.into_iter().find(|path| path.is_file())
 }
 
 fn csv_files(dir: &Path) -> Result<Vec<PathBuf>, DataError> {
@@ -98,6 +116,7 @@ fn sort(files: Vec<PathBuf>) -> Found {
     Found {
         recordings,
         passed_over,
+        map: None,
     }
 }
 

@@ -6,7 +6,9 @@ mod extract;
 mod files;
 pub mod generic;
 pub mod interaction;
+pub mod lanelet;
 mod motion;
+pub mod projection;
 mod site;
 mod table;
 mod tracks;
@@ -17,6 +19,7 @@ pub use site::{Files, Site};
 pub use tracks::{RawState, Recording, STEP_MS, Track};
 
 use crate::encounter::Encounter;
+use lanelet::Map;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -29,6 +32,8 @@ pub struct Dataset {
     pub recordings: Vec<Recording>,
     /// The encounters, ordered by file and, within it, by the recorded tracks.
     pub encounters: Vec<Encounter>,
+    /// The site's map, if there is one beside the recordings.
+    pub map: Option<Map>,
     /// Files that were passed over because they hold pedestrians.
     pub passed_over: Vec<PathBuf>,
 }
@@ -64,7 +69,8 @@ impl Dataset {
     /// `recorded_trackfiles`, as INTERACTION is shipped), or a single file. In a
     /// folder with `vehicle_tracks_NNN.csv` those are read ([`interaction`]); in
     /// any other, all `*.csv` ([`generic`]), numbered by the digits at the end of
-    /// their names, or else in alphabetical order. The files are read and searched
+    /// their names, or else in alphabetical order. The map is the `.osm` file of the
+    /// folder's name, beside it or under `maps`. The files are read and searched
     /// in parallel; the result does not depend on the number of threads.
     ///
     /// # Errors
@@ -77,7 +83,9 @@ impl Dataset {
             .par_iter()
             .map(|file| file.read())
             .collect::<Result<Vec<_>, _>>()?;
+        let map = found.map.as_deref().map(lanelet::read).transpose()?;
         Ok(Self {
+            map,
             passed_over: found.passed_over,
             ..Self::new(site, recordings)
         })
@@ -94,6 +102,7 @@ impl Dataset {
             site,
             recordings,
             encounters,
+            map: None,
             passed_over: Vec::new(),
         }
     }
