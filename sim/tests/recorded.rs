@@ -1,7 +1,7 @@
 //! The recorded encounters of INTERACTION's EP0 and MA; skipped where the recordings are absent.
 
-use cede_sim::data::Split;
 use cede_sim::data::lanelet::LineKind;
+use cede_sim::data::{REST, Split};
 use cede_sim::{Dataset, Encounter, Role, State, advance, clamp_acceleration};
 use std::path::PathBuf;
 
@@ -41,6 +41,23 @@ fn the_paper_s_site_has_its_known_number_of_pairs_in_each_file() {
     assert_eq!(encounters_per_file(&dataset), [7, 44, 16, 38, 66, 80, 30]);
     assert_eq!(dataset.split(Split::Train).count(), 215);
     assert_eq!(dataset.split(Split::Validation).count(), 66);
+}
+
+#[test]
+fn the_train_set_s_known_facts() {
+    let Some(dataset) = load("EP0") else { return };
+    let train = || dataset.split(Split::Train);
+    let different = |id: fn(&Encounter) -> u32| {
+        let ids = train().map(|e| (e.id.file, id(e)));
+        ids.collect::<std::collections::HashSet<_>>().len()
+    };
+    assert_eq!(different(|e| e.id.left), 48);
+    assert_eq!(different(|e| e.id.other), 103);
+    let starts_at_rest = |e: &&Encounter| e.judged(Role::Left).record[0].v < REST;
+    assert_eq!(train().filter(starts_at_rest).count(), 41);
+    let steps = || train().map(|e| e.steps);
+    assert_eq!((steps().min(), steps().max()), (Some(1), Some(275)));
+    assert_eq!(steps().filter(|&steps| steps < 10).count(), 7);
 }
 
 /// The floor of the simulator's own error: what is left when recorded accelerations are replayed.

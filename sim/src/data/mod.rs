@@ -10,12 +10,14 @@ pub mod lanelet;
 mod motion;
 pub mod projection;
 mod site;
+mod summary;
 mod table;
 mod tracks;
 
 pub use error::{DataError, Problem};
 pub use extract::{NEAR, extract};
 pub use site::{Files, Site};
+pub use summary::{Distribution, FileSummary, REST, Summary};
 pub use tracks::{RawState, Recording, STEP_MS, Track};
 
 use crate::encounter::Encounter;
