@@ -13,6 +13,7 @@ pub mod metrics;
 pub mod output;
 pub mod overlap;
 pub mod statistics;
+pub mod synthetic;
 
 pub use data::Dataset;
 pub use driver::{Driver, DriverFactory, State, View};

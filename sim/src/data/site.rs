@@ -93,9 +93,10 @@ fn kind<'d, D: serde::Deserializer<'d>>(deserializer: D) -> Result<ConflictKind,
     match name.as_str() {
         "crossing" => Ok(ConflictKind::Crossing),
         "merging" => Ok(ConflictKind::Merging),
+        "following" => Ok(ConflictKind::Following),
         _ => Err(serde::de::Error::unknown_variant(
             &name,
-            &["crossing", "merging"],
+            &["crossing", "merging", "following"],
         )),
     }
 }
@@ -146,7 +147,7 @@ impl Site {
         }
     }
 
-    fn parse(path: &Path, text: &str) -> Result<Self, DataError> {
+    pub(crate) fn parse(path: &Path, text: &str) -> Result<Self, DataError> {
         let site: Self = toml::from_str(text).map_err(|error| {
             DataError::new(path, Problem::Site(error.to_string().trim_end().to_owned()))
         })?;

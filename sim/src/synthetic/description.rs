@@ -1,0 +1,98 @@
+//! The scene description (TOML) of a synthetic site: which tracks meet there.
+
+use super::layout::{CENTRE, Layout, Movement};
+use super::zone::Meeting;
+use crate::data::Site;
+use crate::encounter::Manoeuvre;
+use std::fmt::Write;
+use std::path::Path;
+
+/// Names of the arms, in the layout's order.
+pub(super) const ARMS: [&str; 4] = ["E", "N", "W", "S"];
+
+/// Two ways across that the site's encounters are made of.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Conflict {
+    /// The movement that has to give way, as an index in [`Layout::movements`].
+    pub(super) yielding: usize,
+    /// The one that it meets.
+    pub(super) other: usize,
+    /// As the description calls it.
+    pub(super) kind: &'static str,
+}
+
+impl Layout {
+    /// How two different movements conflict, if they do.
+    pub(super) fn conflict_kind(&self, a: usize, b: usize) -> Option<&'static str> {
+        let (own, other) = (&self.movements[a], &self.movements[b]);
+        match self.meetings[a][b] {
+            Meeting::Conflict(_) if own.to == other.to => Some("merging"),
+            Meeting::Conflict(_) => Some("crossing"),
+            Meeting::Parting(_) => Some("following"),
+            Meeting::Never => None,
+        }
+    }
+
+    /// The site as the extraction knows it, from [`Layout::description`].
+    ///
+    /// # Errors
+    /// Never, unless the description is not one.
+    pub(super) fn site(&self) -> Result<Site, crate::data::DataError> {
+        Site::parse(Path::new(&self.name), &self.description())
+    }
+
+    /// The scene description, as `Site::named` reads it from a file.
+    pub(super) fn description(&self) -> String {
+        let mut text = format!(
+            "# A synthetic site. Its conflicts name the vehicle that has to give way first.\n\n\
+             name = \"{0}\"\nfolder = \"{0}\"\n",
+            self.name
+        );
+        for (arm, name) in self.arms.iter().zip(ARMS) {
+            let (along, main, side) = if arm.outward.x.abs() > arm.outward.y.abs() {
+                (arm.outward.x.signum(), "x", "y")
+            } else {
+                (arm.outward.y.signum(), "y", "x")
+            };
+            // Beyond the line along the arm, and no farther aside than its tilt takes it.
+            let beyond = if along > 0.0 { "above" } else { "below" };
+            let at = CENTRE.x + along * (arm.line - 3.0);
+            let aside = 8.0 + 0.2 * arm.edge;
+            let (low, high) = (CENTRE.x - aside, CENTRE.x + aside);
+            let _ = write!(
+                text,
+                "\n[[arm]]\nname = \"{name}\"\n{beyond}_{main} = {at:.2}\nabove_{side} = {low:.2}\nbelow_{side} = {high:.2}\n"
+            );
+        }
+        for movement in &self.movements {
+            let manoeuvre = match movement.manoeuvre {
+                Manoeuvre::Left => "left",
+                Manoeuvre::Straight => "straight",
+                Manoeuvre::Right => "right",
+                Manoeuvre::Unknown => "unknown",
+            };
+            let way = way(movement);
+            let _ = write!(
+                text,
+                "\n[[movement]]\nway = {way}\nmanoeuvre = \"{manoeuvre}\"\n"
+            );
+        }
+        for conflict in &self.conflicts {
+            let _ = write!(
+                text,
+                "\n[[conflict]]\nleft = {}\nother = {}\nkind = \"{}\"\n",
+                way(&self.movements[conflict.yielding]),
+                way(&self.movements[conflict.other]),
+                conflict.kind,
+            );
+        }
+        text
+    }
+}
+
+fn way(movement: &Movement) -> String {
+    format!(
+        "{{ from = \"{}\", to = \"{}\" }}",
+        ARMS[movement.from], ARMS[movement.to]
+    )
+}

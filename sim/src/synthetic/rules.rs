@@ -1,0 +1,36 @@
+//! Who has to stop, and who has to give way to whom.
+
+use super::human::Right;
+use super::layout::{Control, Layout, Movement};
+use crate::encounter::Manoeuvre;
+
+impl Layout {
+    /// Whether everybody on this way has to stop at the line.
+    pub(super) fn must_stop(&self, movement: &Movement) -> bool {
+        match self.control {
+            Control::AllWayStop => true,
+            Control::TwoWayStop => !self.arms[movement.from].major,
+            Control::Uncontrolled => false,
+        }
+    }
+
+    /// Who goes first if both come at once: the major road, who comes from the
+    /// right, and oncoming traffic before who turns left across it.
+    pub(super) fn rule(&self, own: &Movement, other: &Movement) -> Right {
+        let stops = (self.must_stop(own), self.must_stop(other));
+        let theirs = match stops {
+            (true, false) => true,
+            (false, true) => false,
+            _ => self.gives_way_aside(own, other),
+        };
+        if theirs { Right::Theirs } else { Right::Mine }
+    }
+
+    fn gives_way_aside(&self, own: &Movement, other: &Movement) -> bool {
+        let side = self.arms[own.from]
+            .outward
+            .cross(self.arms[other.from].outward);
+        let left = |m: &Movement| m.manoeuvre == Manoeuvre::Left;
+        side > 0.5 || (side > -0.5 && left(own) && !left(other))
+    }
+}
