@@ -63,6 +63,7 @@ impl Dataset {
         let every_seventh = |rest| (0..last).filter(|file| file % 7 == rest).collect();
         let mut dataset = Self {
             site: Site::by_headings("synthetic"),
+            map: None,
             recordings: Vec::new(),
             encounters: Vec::new(),
             passed_over: Vec::new(),
