@@ -30,7 +30,7 @@ pub struct Mlp<'a> {
 
 /// A dense layer: a bias for each neuron, and for each input a column of weights, one for each neuron.
 #[derive(Clone, Copy, Debug)]
-struct Dense<'a> {
+pub struct Dense<'a> {
     biases: &'a [u32],
     columns: &'a [u32],
 }
@@ -68,6 +68,13 @@ impl<'a> Mlp<'a> {
         self.output.columns.len() / OUTPUTS
     }
 
+    /// The four layers, from the inputs to the outputs; ReLU follows all but the last.
+    #[must_use]
+    pub const fn layers(&self) -> [Dense<'a>; 4] {
+        let [first, second, third] = self.hidden;
+        [first, second, third, self.output]
+    }
+
     /// The outputs for `inputs`; inputs that are missing count as zero, surplus ones are ignored.
     ///
     /// Cost: `Mlp::words` multiplications and additions, the same instructions for every input.
@@ -84,6 +91,16 @@ impl<'a> Mlp<'a> {
 }
 
 impl<'a> Dense<'a> {
+    /// The bias of each neuron.
+    pub fn biases(&self) -> impl ExactSizeIterator<Item = f32> + use<'a> {
+        self.biases.iter().map(|&word| f32::from_bits(word))
+    }
+
+    /// The weights, input by input: those of input 0 for each neuron, then those of input 1, …
+    pub fn weights(&self) -> impl ExactSizeIterator<Item = f32> + use<'a> {
+        self.columns.iter().map(|&word| f32::from_bits(word))
+    }
+
     /// Takes a layer from the front of `words`.
     fn split(words: &'a [u32], inputs: usize, neurons: usize) -> Option<(Self, &'a [u32])> {
         let (biases, rest) = words.split_at_checked(neurons)?;

@@ -1,0 +1,25 @@
+//! One pass through the network alone, for the two widths in use.
+
+use cede_controller::Mlp;
+use cede_controller::weights::Aligned;
+use criterion::{Criterion, criterion_group, criterion_main};
+use std::hint::black_box;
+
+fn forward(c: &mut Criterion) {
+    let mut group = c.benchmark_group("network");
+    for width in [64, 128] {
+        let count = Mlp::words(8, width);
+        let weight = |i: usize| ((i * 7919 % 1000) as f32 / 2500.0 - 0.2).to_bits();
+        let aligned = Box::new(Aligned::<{ Mlp::words(8, 128) }>(std::array::from_fn(
+            weight,
+        )));
+        let mlp = Mlp::new(&aligned.0[..count], 8, width).expect("the shape fits");
+        let inputs = [0.3f32, -0.7, 0.1, 0.9, -0.2, 0.5, -0.4, 0.8];
+        group.bench_function(format!("8-{width}-{width}-{width}-4"), |b| {
+            b.iter(|| mlp.forward(black_box(&inputs)));
+        });
+    }
+}
+
+criterion_group!(benches, forward);
+criterion_main!(benches);
