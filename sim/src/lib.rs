@@ -14,6 +14,7 @@ pub mod output;
 pub mod overlap;
 pub mod statistics;
 pub mod synthetic;
+pub mod weights;
 
 pub use data::Dataset;
 pub use driver::{Driver, DriverFactory, State, View};
