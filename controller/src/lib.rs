@@ -11,24 +11,30 @@
 extern crate std;
 
 pub mod conflict;
+pub mod decision;
 pub mod features;
 pub mod geometry;
 pub mod mlp;
+pub mod observation;
 pub mod pair;
 pub mod policy;
 pub mod route;
 pub mod scene;
+pub mod shield;
 pub mod svo;
 pub mod weights;
 pub mod zone;
 
 pub use conflict::ConflictKind;
+pub use decision::{Action, Breach, Cause, Decision, Intervention, Outlook, Reason};
 pub use features::FeatureSet;
 pub use geometry::{Footprint, Point, Pose};
 pub use mlp::Mlp;
+pub use observation::{Fault, Observation, Vehicle};
 pub use pair::{Leader, Pair, Part, Party, RightOfWay};
 pub use policy::Policy;
 pub use route::{Route, RouteError};
 pub use scene::{Meeting, Path, Scene, SceneError};
+pub use shield::{Contract, ContractError, Plan, Shield};
 pub use weights::{Perspective, Weights, WeightsError};
 pub use zone::{Interval, Zone};

@@ -10,6 +10,9 @@ use heapless::Vec;
 /// A vehicle has reached the conflict point when it is nearer to it than this (m): the paper's rule.
 pub const CONFLICT_RADIUS: f32 = 5.0;
 
+/// Most others of a scene, whatever its capacity.
+pub const MAX_OTHERS: usize = 8;
+
 /// A route and the rectangle that its vehicle covers.
 #[derive(Clone, Copy, Debug)]
 pub struct Path<'a, const P: usize> {
@@ -22,7 +25,7 @@ pub struct Path<'a, const P: usize> {
 /// Why a scene cannot be prepared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SceneError {
-    /// No other route, or more than the scene's capacity.
+    /// No other route, or more than the scene's capacity or [`MAX_OTHERS`].
     Others,
     /// A footprint's side is not a number, not positive or larger than [`Scene::MAX_FOOTPRINT`].
     Footprint,
@@ -31,7 +34,7 @@ pub enum SceneError {
 impl core::fmt::Display for SceneError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
-            Self::Others => "a scene needs one other route, and no more than its capacity",
+            Self::Others => "a scene needs one other route, and no more than its capacity or 8",
             Self::Footprint => "a footprint's sides must be positive and at most 40 m",
         })
     }
@@ -108,7 +111,7 @@ impl<const N: usize> Scene<N> {
         ego: Path<'_, P>,
         others: &[Path<'_, P>],
     ) -> Result<Self, SceneError> {
-        if others.is_empty() {
+        if others.is_empty() || others.len() > MAX_OTHERS {
             return Err(SceneError::Others);
         }
         let mut scene = Self {

@@ -1,0 +1,147 @@
+//! What the controller decides, and why.
+
+use crate::observation::Fault;
+use core::fmt;
+
+/// The ego's acceleration for the period that begins, and why it is what it is.
+///
+/// Displays as one line for a log, as in
+/// `shielded: other 2 may arrive in 1.3 s, clearing needs 1.9 s`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Decision {
+    /// The acceleration in m/s²; always finite, and within [−braking, acceleration] of the contract's ego.
+    pub acceleration: f32,
+    /// Who decided.
+    pub cause: Cause,
+    /// Metres to spare of the best plan that follows; negative if no plan is safe. Not a number is
+    /// never; without an observation that can be trusted it is 0.
+    pub margin: f32,
+    /// Somebody did what the contract excludes, since the last decision.
+    pub breach: Option<Breach>,
+    /// What the policy thinks of the other that restricts the ego most, if it was asked.
+    pub outlook: Option<Outlook>,
+}
+
+/// What the policy thinks of one other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outlook {
+    /// Number of the other.
+    pub other: u8,
+    /// The ego's social value orientation towards it in rad, in [0, π/2].
+    pub svo: f32,
+    /// The acceleration (m/s²) that is expected of it, within ± 3.
+    pub acceleration: f32,
+}
+
+/// Who decided.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cause {
+    /// The policy: its proposal is safe.
+    Policy,
+    /// The shield: the proposal is not.
+    Shielded(Intervention),
+    /// Nobody could: the ego carries on with the plan that was verified last, or brakes.
+    Fallback(Fault),
+}
+
+/// What the shield did instead, and why.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Intervention {
+    /// What it did.
+    pub action: Action,
+    /// What the proposal would have led to.
+    pub reason: Reason,
+}
+
+/// What the shield does instead of what was proposed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Action {
+    /// The nearest acceleration that is safe.
+    Nearest,
+    /// The next command of the plan that was verified last.
+    Remembered,
+}
+
+/// Why a proposal is refused.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reason {
+    /// The ego could not clear the zone before the other's earliest arrival.
+    Arrival {
+        /// Number of the other.
+        other: u8,
+        /// The other's earliest arrival, s from now.
+        arrives: f32,
+        /// When the ego would have cleared the zone, s from now.
+        clears: f32,
+    },
+    /// The ego would enter the other's lane without the gap in which the other can stop.
+    Entry {
+        /// Number of the other.
+        other: u8,
+        /// The gap on entry in m; negative if the other is ahead by then.
+        gap: f32,
+        /// The gap that is needed in m.
+        needs: f32,
+    },
+    /// The ego could not stop short of the other's zone, or behind the other in its lane.
+    Stop {
+        /// Number of the other.
+        other: u8,
+        /// Metres to where it must be at rest; negative if it is past that.
+        available: f32,
+        /// Metres that it needs.
+        needs: f32,
+    },
+}
+
+/// Who broke the contract.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Breach {
+    /// The ego did not do as it was told.
+    Ego,
+    /// This other moved in a way in which it could not.
+    Other(u8),
+}
+
+impl fmt::Display for Decision {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.cause {
+            Cause::Policy => f.write_str("policy")?,
+            Cause::Shielded(Intervention { reason, .. }) => write!(f, "shielded: {reason}")?,
+            Cause::Fallback(fault) => write!(f, "fallback: {fault}")?,
+        }
+        match self.breach {
+            None => Ok(()),
+            Some(Breach::Ego) => f.write_str("; the ego did not do as it was told"),
+            Some(Breach::Other(other)) => write!(f, "; other {other} broke the contract"),
+        }
+    }
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Arrival {
+                other,
+                arrives,
+                clears,
+            } if arrives > 0.0 => write!(
+                f,
+                "other {other} may arrive in {arrives:.1} s, clearing needs {clears:.1} s"
+            ),
+            Self::Arrival { other, .. } => write!(f, "other {other} is in its zone"),
+            Self::Entry { other, gap, needs } => write!(
+                f,
+                "other {other} may be as near as {gap:.1} m, entering needs {needs:.1} m"
+            ),
+            Self::Stop {
+                other,
+                available,
+                needs,
+            } => write!(
+                f,
+                "stopping needs {needs:.1} m, to other {other} there are {available:.1} m"
+            ),
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! What the shield assumes of the world, in numbers.
+
+/// The assumptions under which the shield's guarantee holds.
+///
+/// Guarantee: the ego is never in a conflict zone together with another vehicle, and never
+/// hits a vehicle ahead of it in its lane. `docs/shield.md` has the theorem.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contract {
+    /// Time from one decision to the next in s, in (0, 1].
+    pub period: f32,
+    /// A command takes effect within this time in s, in [0, `period`]; until then the one before it does.
+    pub latency: f32,
+    /// Largest error of a sensed arc length in m, the ego's or another's, in [0, 10].
+    pub position_error: f32,
+    /// Largest error of a sensed speed in m/s, in [0, 10].
+    pub speed_error: f32,
+    /// Subtracted from every margin, in m, in [0, 10]: covers the rounding of `f32`.
+    pub slack: f32,
+    /// What the ego can do.
+    pub ego: Ego,
+    /// What every other vehicle can do, at most.
+    pub other: Other,
+    /// What a vehicle does that finds the ego ahead of it in its lane.
+    pub follower: Follower,
+    /// The rule of precedence that the others keep, if they do: without it nobody's courtesy is
+    /// assumed where routes cross.
+    pub precedence: Option<Precedence>,
+}
+
+/// What the ego can do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ego {
+    /// It is not accelerated at or above this speed, in m/s, in (0, 100].
+    pub max_speed: f32,
+    /// Largest acceleration that is commanded, in m/s², in (0, 20].
+    pub acceleration: f32,
+    /// Acceleration that it achieves when it must clear a zone, in m/s², in (0, `acceleration`].
+    pub go: f32,
+    /// Braking that it achieves, and the hardest that is commanded, in m/s², in (0, 20].
+    pub braking: f32,
+}
+
+/// What another vehicle can do, at most. It follows its route forwards.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Other {
+    /// Highest speed in m/s, in (0, 100]. A vehicle seen above it keeps that speed at most.
+    pub max_speed: f32,
+    /// Hardest acceleration in m/s², in (0, 20].
+    pub acceleration: f32,
+    /// Hardest braking in m/s², in [the ego's `braking`, 20].
+    pub braking: f32,
+}
+
+/// What a vehicle does that finds the ego ahead of it in its lane: after `reaction` it brakes at
+/// `braking` or harder for as long as it must, if that is enough to stop behind the ego
+/// (responsibility-sensitive safety; Shalev-Shwartz, Shammah and Shashua, arXiv:1708.06374).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Follower {
+    /// Reaction time in s, in [0, 10].
+    pub reaction: f32,
+    /// Braking in m/s², in (0, the other's hardest `braking`].
+    pub braking: f32,
+}
+
+/// Who arrived first goes first; in a tie, who has the right of way.
+///
+/// A vehicle arrives when it comes within `distance` of its zone with the other. The one with
+/// precedence assumes that the other stays out of the zone if it can still stop before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Precedence {
+    /// Metres before the zone at which a vehicle has arrived, in (0, 200].
+    pub distance: f32,
+    /// Arrivals within this many periods of each other are a tie. If they are one period further
+    /// apart, nobody has precedence: the two vehicles may count differently.
+    pub tie: u16,
+    /// Braking in m/s², in (0, 20], with which the other is expected to stop.
+    pub braking: f32,
+}
+
+/// The first number of a [`Contract`] that is out of its range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContractError {
+    /// `period` or `latency`.
+    Time,
+    /// `position_error`, `speed_error` or `slack`.
+    Tolerance,
+    /// A number of [`Ego`].
+    Ego,
+    /// A number of [`Other`].
+    Other,
+    /// A number of [`Follower`].
+    Follower,
+    /// A number of [`Precedence`].
+    Precedence,
+}
+
+impl core::fmt::Display for ContractError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Time => "the period must be in (0, 1] s and the latency no longer",
+            Self::Tolerance => "an error or the slack is negative, or larger than 10",
+            Self::Ego => "the ego's speed, acceleration or braking is out of range",
+            Self::Other => "the others' speed, acceleration or braking is out of range",
+            Self::Follower => "the follower's reaction time or braking is out of range",
+            Self::Precedence => "the distance or braking of the rule of precedence is out of range",
+        })
+    }
+}
+
+impl core::error::Error for ContractError {}
+
+impl Contract {
+    /// The worst case: others accelerate at 3 m/s² up to 15 m/s and may brake at 8; a command takes
+    /// effect one period late; at crossings nobody is courteous. Sensors are exact.
+    pub const WORST_CASE: Self = Self {
+        period: 0.1,
+        latency: 0.1,
+        position_error: 0.0,
+        speed_error: 0.0,
+        slack: 0.01,
+        ego: Ego {
+            max_speed: 15.0,
+            acceleration: 3.0,
+            go: 3.0,
+            braking: 3.0,
+        },
+        other: Other {
+            max_speed: 15.0,
+            acceleration: 3.0,
+            braking: 8.0,
+        },
+        follower: Follower {
+            reaction: 0.5,
+            braking: 4.0,
+        },
+        precedence: None,
+    };
+
+    /// [`Contract::WORST_CASE`] among vehicles that keep the rule of precedence of an all-way stop.
+    pub const ALL_WAY_STOP: Self = Self {
+        precedence: Some(Precedence {
+            distance: 12.0,
+            tie: 5,
+            braking: 3.0,
+        }),
+        ..Self::WORST_CASE
+    };
+
+    /// The contract, if every number is in its range.
+    ///
+    /// # Errors
+    /// The first that is not. Never panics.
+    pub fn checked(self) -> Result<Self, ContractError> {
+        use ContractError as E;
+        let up_to = |value: f32, limit: f32| value > 0.0 && value <= limit;
+        let from_zero = |value: f32, limit: f32| value >= 0.0 && value <= limit;
+        let (ego, other, follower) = (self.ego, self.other, self.follower);
+        let checks = [
+            (up_to(self.period, 1.0), E::Time),
+            (from_zero(self.latency, self.period), E::Time),
+            (from_zero(self.position_error, 10.0), E::Tolerance),
+            (from_zero(self.speed_error, 10.0), E::Tolerance),
+            (from_zero(self.slack, 10.0), E::Tolerance),
+            (up_to(ego.max_speed, 100.0), E::Ego),
+            (up_to(ego.acceleration, 20.0), E::Ego),
+            (up_to(ego.go, ego.acceleration), E::Ego),
+            (up_to(ego.braking, 20.0), E::Ego),
+            (up_to(other.max_speed, 100.0), E::Other),
+            (up_to(other.acceleration, 20.0), E::Other),
+            (up_to(other.braking, 20.0), E::Other),
+            // The gap to a leader is smallest at the end only if the leader can brake harder.
+            (other.braking >= ego.braking, E::Other),
+            (from_zero(follower.reaction, 10.0), E::Follower),
+            (up_to(follower.braking, other.braking), E::Follower),
+            (
+                self.precedence
+                    .is_none_or(|p| up_to(p.distance, 200.0) && up_to(p.braking, 20.0)),
+                E::Precedence,
+            ),
+        ];
+        match checks.iter().find(|(holds, _)| !holds) {
+            Some(&(_, error)) => Err(error),
+            None => Ok(self),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_named_contracts_are_in_range() {
+        assert!(Contract::WORST_CASE.checked().is_ok());
+        assert!(Contract::ALL_WAY_STOP.checked().is_ok());
+    }
+
+    #[test]
+    fn numbers_out_of_range_are_named() {
+        let mut contract = Contract::WORST_CASE;
+        contract.latency = 0.2;
+        assert_eq!(contract.checked(), Err(ContractError::Time));
+        contract = Contract::WORST_CASE;
+        contract.ego.go = f32::NAN;
+        assert_eq!(contract.checked(), Err(ContractError::Ego));
+        contract = Contract::WORST_CASE;
+        contract.ego.braking = 9.0;
+        assert_eq!(contract.checked(), Err(ContractError::Other));
+    }
+}

@@ -1,0 +1,204 @@
+//! The conflict zones ahead, as distances from where the ego is now.
+
+use super::contract::Contract;
+use super::plan::lesser;
+use super::precedence::Claims;
+use super::rules::Rules;
+use crate::observation::{Observation, Vehicle};
+use crate::scene::{MAX_OTHERS, Scene};
+use crate::zone::{FAR, MAX_ZONES, Zone};
+use heapless::Vec;
+
+const CAPACITY: usize = MAX_OTHERS * MAX_ZONES;
+
+/// A zone that the ego has not cleared and the other has not left.
+///
+/// All distances are metres from where the ego is, sensing errors included on the safe side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hazard {
+    /// Number of the other.
+    pub other: u8,
+    /// Having gone so far, the ego has certainly cleared the zone, and sees it.
+    pub target: f32,
+    /// The ego must come to rest within this distance unless it clears the zone in time.
+    pub limit: f32,
+    /// The least limit of the hazards whose targets are farther.
+    pub limit_beyond: f32,
+    /// What clearing in time means.
+    pub passage: Passage,
+}
+
+/// When the ego may clear a hazard.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Passage {
+    /// Before the other arrives at its zone.
+    Before {
+        /// Metres, at least, from the other to its zone; negative if it is in it.
+        distance: f32,
+        /// The other's speed, at most, in m/s.
+        speed: f32,
+    },
+    /// Ahead of the other, with the safe gap, into the lane that they share from there on.
+    Ahead {
+        /// The gap (m), at least, if the other stayed where it is.
+        gap: f32,
+        /// The other's speed, at most, in m/s.
+        speed: f32,
+    },
+    /// Any time: the ego has precedence, and the other can still stop.
+    Granted {
+        /// Metres between the other's stop and its zone.
+        margin: f32,
+    },
+    /// Not as long as the other is where it is: the ego is behind it in one lane, or meets it head-on.
+    Never,
+}
+
+/// The hazards, sorted by [`Hazard::target`].
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Hazards {
+    sorted: Vec<Hazard, CAPACITY>,
+}
+
+impl Hazards {
+    /// The hazards of what is seen, with the rule of precedence applied.
+    ///
+    /// Cost: O(zones²) for the sorting, at most 24². Never panics.
+    pub(crate) fn new<const N: usize, R: Rules>(
+        contract: &Contract,
+        scene: &Scene<N>,
+        seen: &Observation<N>,
+        claims: Claims,
+    ) -> Self {
+        let mut hazards = Self { sorted: Vec::new() };
+        let pairs = scene.meetings().iter().zip(seen.others.iter());
+        for (number, (meeting, other)) in (0_u8..).zip(pairs) {
+            let Some(other) = other else { continue };
+            for zone in meeting.zones() {
+                if let Some(hazard) = hazard::<R>(contract, zone, &seen.ego, other) {
+                    let claimed = claims.has(number);
+                    hazards.insert::<R>(Hazard {
+                        other: number,
+                        passage: if claimed {
+                            granted(contract, hazard.passage, zone, other)
+                        } else {
+                            hazard.passage
+                        },
+                        ..hazard
+                    });
+                }
+            }
+        }
+        hazards.look_beyond();
+        hazards
+    }
+
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &Hazard> {
+        self.sorted.iter()
+    }
+
+    /// The least limit of all.
+    pub(crate) fn nearest_limit(&self) -> f32 {
+        self.sorted
+            .first()
+            .map_or(FAR, |first| lesser(first.limit, first.limit_beyond))
+    }
+
+    fn insert<R: Rules>(&mut self, hazard: Hazard) {
+        // 8 others of 3 zones: `Scene` and `MAX_ZONES` see to it that there are no more.
+        let _ = self.sorted.push(hazard);
+        for i in (1..self.sorted.len()).rev() {
+            if let Some([before, after]) = self.sorted.get_mut(i - 1..=i)
+                && R::sooner(after, before)
+            {
+                core::mem::swap(before, after);
+            }
+        }
+    }
+
+    fn look_beyond(&mut self) {
+        let mut least = FAR;
+        for hazard in self.sorted.iter_mut().rev() {
+            hazard.limit_beyond = least;
+            least = lesser(least, hazard.limit);
+        }
+    }
+}
+
+/// The hazard of one zone, if it is one.
+fn hazard<R: Rules>(
+    contract: &Contract,
+    zone: &Zone,
+    ego: &Vehicle,
+    other: &Vehicle,
+) -> Option<Hazard> {
+    let error = contract.position_error;
+    if ego.s - error >= zone.ego.to || R::left(zone, other.s - error) {
+        return None;
+    }
+    let stop = zone.ego.from - ego.s - error;
+    let crossing = Hazard {
+        other: 0,
+        // The ego is then past the zone by twice the error, so that it will be seen to be.
+        target: R::cleared_at(zone) - ego.s + 3.0 * error,
+        limit: stop,
+        limit_beyond: FAR,
+        passage: Passage::Before {
+            distance: zone.other.from - other.s - error,
+            speed: other.speed + contract.speed_error,
+        },
+    };
+    if !zone.is_lane() {
+        return Some(crossing);
+    }
+    let lead = ego.s - other.s;
+    if ego.s - error >= zone.ego.from && lead >= 0.5 * (zone.lead.from + zone.lead.to) {
+        // The ego is ahead in the lane: the other is the one who has to keep its distance.
+        return None;
+    }
+    let behind = behind::<R>(contract, zone.lead.from - lead - 2.0 * error, other);
+    Some(if behind > stop {
+        Hazard {
+            target: FAR,
+            limit: behind,
+            passage: Passage::Never,
+            ..crossing
+        }
+    } else {
+        Hazard {
+            target: zone.ego.from - ego.s + 3.0 * error,
+            passage: Passage::Ahead {
+                gap: zone.ego.from - other.s - error - zone.lead.to,
+                speed: other.speed + contract.speed_error,
+            },
+            ..crossing
+        }
+    })
+}
+
+/// How far the ego may go and still be at rest behind an other that is `gap` ahead and brakes as hard as it can.
+fn behind<R: Rules>(contract: &Contract, gap: f32, other: &Vehicle) -> f32 {
+    if gap < 0.0 {
+        // Not behind it at all.
+        return gap;
+    }
+    let speed = other.speed - contract.speed_error;
+    gap + R::earliest_rest(contract, if speed > 0.0 { speed } else { 0.0 })
+}
+
+/// The passage of a zone in which the ego has precedence: free, if the other can still stop before it.
+fn granted(contract: &Contract, passage: Passage, zone: &Zone, other: &Vehicle) -> Passage {
+    let (Some(rule), Passage::Before { .. } | Passage::Ahead { .. }) =
+        (contract.precedence, passage)
+    else {
+        return passage;
+    };
+    let speed = other.speed + contract.speed_error;
+    let stops = other.s + contract.position_error + speed * speed / (2.0 * rule.braking);
+    let margin = zone.other.from - stops;
+    if margin >= 0.0 {
+        Passage::Granted { margin }
+    } else {
+        passage
+    }
+}

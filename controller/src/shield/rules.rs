@@ -1,0 +1,84 @@
+//! The elementary rules of which the shield is composed.
+
+use super::contract::Contract;
+use super::hazard::Hazard;
+use super::margin::{self, Departure};
+use super::plan::Plan;
+use super::reach::Reach;
+use crate::zone::Zone;
+
+/// The rules, one method each. [`Sound`] is the only implementation that drives.
+///
+/// The seam exists for tests: a shield in which a single rule is broken must be caught.
+pub trait Rules {
+    /// Bounds on the ego until a plan's first command is in effect: [`margin::departure`].
+    #[must_use]
+    fn departure(
+        contract: &Contract,
+        speed: f32,
+        previous: [f32; 2],
+        command: f32,
+    ) -> Departure<f32> {
+        margin::departure(contract, speed, previous, command)
+    }
+
+    /// Where the ego is at rest if it goes for `time` after `from` and then brakes: [`margin::rest`].
+    #[must_use]
+    fn rest(contract: &Contract, from: Reach<f32>, time: f32) -> f32 {
+        margin::rest(contract, from, time)
+    }
+
+    /// Whether the ego stops in time: [`margin::stops_short`].
+    #[must_use]
+    fn stops_short(contract: &Contract, limit: f32, rest: f32) -> f32 {
+        margin::stops_short(contract, limit, rest)
+    }
+
+    /// How far an other gets: [`margin::rush`].
+    #[must_use]
+    fn rush(contract: &Contract, speed: f32, time: f32) -> Reach<f32> {
+        margin::rush(contract, speed, time)
+    }
+
+    /// The gap at which the ego may enter a lane: [`margin::safe_gap`].
+    #[must_use]
+    fn safe_gap(contract: &Contract, speed: f32, ego_speed: f32) -> f32 {
+        margin::safe_gap(contract, speed, ego_speed)
+    }
+
+    /// Where an other ahead is at rest at the earliest: [`margin::earliest_rest`].
+    #[must_use]
+    fn earliest_rest(contract: &Contract, speed: f32) -> f32 {
+        margin::earliest_rest(contract, speed)
+    }
+
+    /// The arc length at which the ego has cleared a zone in which routes cross.
+    #[must_use]
+    fn cleared_at(zone: &Zone) -> f32 {
+        zone.ego.to
+    }
+
+    /// Whether an other that is at least at `other` has left the zone, for ever.
+    #[must_use]
+    fn left(zone: &Zone, other: f32) -> bool {
+        other >= zone.other.to
+    }
+
+    /// Whether hazard `a` is cleared before hazard `b`.
+    #[must_use]
+    fn sooner(a: &Hazard, b: &Hazard) -> bool {
+        a.target < b.target
+    }
+
+    /// What is left of a plan after its first command.
+    #[must_use]
+    fn tail(plan: Plan) -> Plan {
+        plan.tail()
+    }
+}
+
+/// The rules as they are proved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sound;
+
+impl Rules for Sound {}
