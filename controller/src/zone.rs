@@ -29,8 +29,11 @@ pub const INFLATION: f32 = 0.02;
 /// Zones whose intervals come as near as this (m) are one; also how near to a route's end its end is.
 const TOUCHING: f32 = 1.0e-3;
 
-/// Two directions whose cosine is above this run along one lane: within 45°.
-const PARALLEL: f32 = 0.7;
+/// Two directions whose cosine is above this point the same way: within 30°.
+const PARALLEL: f32 = 0.866;
+
+/// Vehicles that touch while they point the same way share a lane if they do so over this distance (m).
+const LANE: f32 = 2.0;
 
 /// A closed interval, `from` ≤ `to`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,7 +111,23 @@ impl Zone {
     pub fn is_lane(&self) -> bool {
         matches!(self.kind, ConflictKind::Merging | ConflictKind::Following)
     }
+}
 
+/// A part of the occupied set, on the way to a [`Zone`].
+#[derive(Clone, Copy, Debug)]
+struct Patch {
+    ego: Interval,
+    other: Interval,
+    lead: Interval,
+    /// Arc lengths of the ego at which it touches the other while both point the same way.
+    parallel: Option<Interval>,
+    /// They do so where a route starts.
+    starts: bool,
+    /// They do so where a route ends.
+    ends: bool,
+}
+
+impl Patch {
     fn touches(&self, other: &Self) -> bool {
         self.ego.touches(other.ego) && self.other.touches(other.other)
     }
@@ -117,17 +136,31 @@ impl Zone {
         self.ego = self.ego.hull(other.ego);
         self.other = self.other.hull(other.other);
         self.lead = self.lead.hull(other.lead);
-        self.kind = stronger(self.kind, other.kind);
+        self.parallel = match (self.parallel, other.parallel) {
+            (Some(a), Some(b)) => Some(a.hull(b)),
+            (a, b) => a.or(b),
+        };
+        self.starts |= other.starts;
+        self.ends |= other.ends;
     }
-}
 
-/// The kind of a zone made of two: a lane from the start outweighs one from a merge on.
-fn stronger(a: ConflictKind, b: ConflictKind) -> ConflictKind {
-    use ConflictKind::{Crossing, Following, Merging};
-    match (a, b) {
-        (Following, _) | (_, Following) => Following,
-        (Merging, _) | (_, Merging) => Merging,
-        _ => Crossing,
+    fn zone(&self) -> Zone {
+        let lane = self.parallel.is_some_and(|p| p.to - p.from >= LANE);
+        // A shared lane goes on past the end of the shorter route, for both.
+        let end = |interval: Interval| Interval {
+            to: if lane && self.ends { FAR } else { interval.to },
+            ..interval
+        };
+        Zone {
+            ego: end(self.ego),
+            other: end(self.other),
+            lead: self.lead,
+            kind: match (lane, self.starts) {
+                (true, true) => ConflictKind::Following,
+                (true, false) => ConflictKind::Merging,
+                (false, _) => ConflictKind::Crossing,
+            },
+        }
     }
 }
 
@@ -142,33 +175,33 @@ pub(crate) fn zones<const P: usize>(
     (ego, ego_footprint): (&Route<P>, Footprint),
     (other, other_footprint): (&Route<P>, Footprint),
 ) -> Zones {
-    let mut zones = [None; MAX_ZONES];
+    let mut patches = [None; MAX_ZONES];
     for a in segments(ego, ego_footprint) {
         for b in segments(other, other_footprint) {
-            if let Some(zone) = meet(&a, &b) {
-                insert(&mut zones, zone);
+            if let Some(patch) = meet(&a, &b) {
+                insert(&mut patches, patch);
             }
         }
     }
-    zones
+    patches.map(|patch| patch.map(|patch| patch.zone()))
 }
 
-/// Adds a zone, or widens those that it touches: what hangs together ends up in one zone.
-fn insert(zones: &mut Zones, mut zone: Zone) {
-    let touched = |zones: &mut Zones, zone: &Zone| {
-        zones
+/// Adds a patch, or widens those that it touches: what hangs together ends up in one.
+fn insert(patches: &mut [Option<Patch>; MAX_ZONES], mut patch: Patch) {
+    let touched = |patches: &mut [Option<Patch>], patch: &Patch| {
+        patches
             .iter_mut()
-            .find(|slot| slot.is_some_and(|met| met.touches(zone)))
+            .find(|slot| slot.is_some_and(|met| met.touches(patch)))
             .and_then(Option::take)
     };
-    // Each round empties a slot. The wider zone may touch one that was passed over.
-    while let Some(met) = touched(zones, &zone) {
-        zone.absorb(&met);
+    // Each round empties a slot. The wider patch may touch one that was passed over.
+    while let Some(met) = touched(patches, &patch) {
+        patch.absorb(&met);
     }
-    if let Some(slot) = zones.iter_mut().find(|slot| slot.is_none()) {
-        *slot = Some(zone);
-    } else if let Some(last) = zones.last_mut().and_then(Option::as_mut) {
-        last.absorb(&zone);
+    if let Some(slot) = patches.iter_mut().find(|slot| slot.is_none()) {
+        *slot = Some(patch);
+    } else if let Some(last) = patches.last_mut().and_then(Option::as_mut) {
+        last.absorb(&patch);
     }
 }
 
@@ -212,7 +245,7 @@ fn segments<const P: usize>(
 type Polygon = Vec<Point, 12>;
 
 /// What of the two segments is occupied.
-fn meet(a: &Segment, b: &Segment) -> Option<Zone> {
+fn meet(a: &Segment, b: &Segment) -> Option<Patch> {
     let between = a.start - b.start;
     let reach = a.length + b.length + a.half.0 + a.half.1 + b.half.0 + b.half.1;
     if between.dot(between) > reach * reach {
@@ -280,7 +313,7 @@ fn cut(polygon: &Polygon, inside: impl Fn(Point) -> f32) -> Polygon {
     kept
 }
 
-fn bounds(a: &Segment, b: &Segment, polygon: &Polygon) -> Option<Zone> {
+fn bounds(a: &Segment, b: &Segment, polygon: &Polygon) -> Option<Patch> {
     let first = *polygon.first()?;
     let point = |value| Interval {
         from: value,
@@ -298,27 +331,19 @@ fn bounds(a: &Segment, b: &Segment, polygon: &Polygon) -> Option<Zone> {
         (a.last && ego.to >= a.length - TOUCHING) || (b.last && other.to >= b.length - TOUCHING);
     let parallel = a.direction.dot(b.direction) > PARALLEL;
     let offset = a.arc - b.arc;
-    // A shared lane goes on past the end of the shorter route, for both.
-    let end = |to| if parallel && ends { FAR } else { to };
-    let (ego, other) = (placed(ego, a), placed(other, b));
-    Some(Zone {
-        ego: Interval {
-            to: end(ego.to),
-            ..ego
-        },
-        other: Interval {
-            to: end(other.to),
-            ..other
-        },
+    Some(Patch {
+        ego: placed(ego, a),
+        other: placed(other, b),
         lead: Interval {
             from: lead.from + offset - INFLATION,
             to: lead.to + offset + INFLATION,
         },
-        kind: match (parallel && starts, parallel && ends) {
-            (true, _) => ConflictKind::Following,
-            (false, true) => ConflictKind::Merging,
-            (false, false) => ConflictKind::Crossing,
-        },
+        parallel: parallel.then_some(Interval {
+            from: a.arc + ego.from,
+            to: a.arc + ego.to,
+        }),
+        starts: parallel && starts,
+        ends: parallel && ends,
     })
 }
 

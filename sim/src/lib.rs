@@ -15,6 +15,7 @@ pub mod overlap;
 pub mod statistics;
 pub mod synthetic;
 pub mod weights;
+pub mod transparency;
 
 pub use data::Dataset;
 pub use driver::{Driver, DriverFactory, State, View};
