@@ -39,7 +39,9 @@ impl OrientedBox {
     #[must_use]
     #[inline]
     pub fn overlaps(&self, other: &Self) -> bool {
-        self.separations(other).iter().all(|&gap| gap <= 0.0)
+        let [a, b, c, d] = self.separations(other);
+        // Without short circuits: four comparisons cost less than one branch taken by surprise.
+        (a <= 0.0) & (b <= 0.0) & (c <= 0.0) & (d <= 0.0)
     }
 
     /// The widest gap (m) seen along the four directions of the sides.

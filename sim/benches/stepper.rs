@@ -1,0 +1,120 @@
+//! Steps of the batch stepper a second, and one box-against-box test beside parry2d's.
+
+#[path = "../tests/scenes/mod.rs"]
+mod scenes;
+
+use cede_controller::{Footprint, Point, Pose};
+use cede_sim::OrientedBox;
+use cede_sim::batch::{Batch, Block, LANES, Library};
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+use rapier2d::parry::query::details::intersection_test_cuboid_cuboid;
+use rapier2d::parry::query::intersection_test;
+use rapier2d::parry::shape::Cuboid;
+use std::hint::black_box;
+
+/// A policy that costs next to nothing, and lets episodes end in every way.
+fn drive<const N: usize>(library: &Library, block: &mut Block<N>) {
+    let mut accelerations = [[0.0; LANES]; N];
+    for (asked, motion) in accelerations.iter_mut().zip(block.vehicles()) {
+        *asked = motion.v.map(|v| 0.5 * (8.0 - v));
+    }
+    block.advance(library, &accelerations);
+    block.restart(library);
+}
+
+fn steps<const N: usize>(criterion: &mut Criterion, encounters: usize, threads: usize) {
+    let recorded = scenes::encounters(400, u32::try_from(N).unwrap(), 1);
+    let library = Library::new(&recorded, Footprint::PAPER).unwrap();
+    let mut batch = Batch::<N>::new(&library, encounters, 2);
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .unwrap();
+    let mut group = criterion.benchmark_group("batch");
+    group.throughput(Throughput::Elements(encounters as u64));
+    let name = BenchmarkId::from_parameter(format!(
+        "{N} vehicles, {encounters} encounters, {threads} threads"
+    ));
+    group.bench_function(name, |bencher| {
+        pool.install(|| bencher.iter(|| batch.for_each(drive)));
+    });
+    group.finish();
+}
+
+fn batch(criterion: &mut Criterion) {
+    for threads in [1, 2] {
+        steps::<2>(criterion, 4096, threads);
+    }
+    for encounters in [64, 512, 32_768] {
+        steps::<2>(criterion, encounters, 1);
+    }
+    steps::<4>(criterion, 4096, 1);
+    steps::<8>(criterion, 4096, 1);
+}
+
+/// Pairs of vehicles in all attitudes, about half of them in contact.
+fn pairs() -> Vec<[Pose; 2]> {
+    let mut random = Pcg64::seed_from_u64(3);
+    let mut pose = || {
+        let heading: f32 = random.random_range(-3.2..3.2);
+        Pose {
+            position: Point::new(random.random_range(0.0..5.0), random.random_range(0.0..5.0)),
+            direction: Point::new(heading.cos(), heading.sin()),
+        }
+    };
+    (0..1024).map(|_| [pose(), pose()]).collect()
+}
+
+fn boxes(criterion: &mut Criterion) {
+    let poses = pairs();
+    let mut group = criterion.benchmark_group("box against box");
+    group.throughput(Throughput::Elements(poses.len() as u64));
+    let ours: Vec<_> = poses
+        .iter()
+        .map(|pair| pair.map(|pose| OrientedBox::new(pose, Footprint::PAPER)))
+        .collect();
+    group.bench_function("ours", |bencher| {
+        bencher.iter(|| {
+            black_box(&ours)
+                .iter()
+                .filter(|[a, b]| black_box(a.overlaps(b)))
+                .count()
+        });
+    });
+    use rapier2d::math::{Pose as Placement, Rotation, Vector};
+    let placement = |pose: Pose| {
+        let (position, direction) = (pose.position, pose.direction);
+        Placement::from_parts(
+            Vector::new(position.x, position.y),
+            Rotation::from_cos_sin_unchecked(direction.x, direction.y),
+        )
+    };
+    let theirs: Vec<_> = poses.iter().map(|pair| pair.map(placement)).collect();
+    let vehicle = Cuboid::new(Vector::new(2.5, 1.0));
+    group.bench_function("parry2d", |bencher| {
+        bencher.iter(|| {
+            let touch = |[a, b]: &&[Placement; 2]| {
+                let verdict = intersection_test(a, &vehicle, b, &vehicle);
+                black_box(verdict.is_ok_and(|found| found.intersecting))
+            };
+            black_box(&theirs).iter().filter(touch).count()
+        });
+    });
+    group.bench_function("parry2d, without dispatch", |bencher| {
+        bencher.iter(|| {
+            let touch = |[a, b]: &&[Placement; 2]| {
+                let relative = a.inv_mul(b);
+                black_box(intersection_test_cuboid_cuboid(
+                    &relative, &vehicle, &vehicle,
+                ))
+            };
+            black_box(&theirs).iter().filter(touch).count()
+        });
+    });
+    group.finish();
+}
+
+criterion_group!(benches, batch, boxes);
+criterion_main!(benches);

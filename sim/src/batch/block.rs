@@ -1,0 +1,343 @@
+//! Eight encounters in lockstep: the unit that a batch steps, and that vector instructions work on.
+
+use super::library::{Library, Scenario};
+use super::motion::Motion;
+use super::orientation::svo;
+use super::{LANES, Lanes};
+use crate::encounter::Role;
+use crate::reward::{COLLISION, EpisodeLength, PAST_THE_RECORD, svo_deviation};
+use cede_controller::svo::svo as exact_svo;
+use core::f32::consts::FRAC_PI_4;
+use core::ops::Range;
+use rand::RngExt;
+use rand_pcg::Pcg64;
+
+/// How far an episode has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Outcome {
+    /// It goes on.
+    Running,
+    /// This vehicle reached its conflict point first.
+    Arrived(Role),
+    /// One of the two judged vehicles touched a vehicle.
+    Collided,
+    /// Nobody arrived within twice the record's length.
+    TimedOut,
+}
+
+/// Eight encounters of `N` vehicles, stepped together; entry `i` of every array belongs to encounter `i`.
+///
+/// Vehicles 0 and 1 are the two judged ones, the others the traffic around them, in the order
+/// of [`crate::Encounter::participants`]; vehicles beyond `N` are left out.
+#[derive(Clone, Debug)]
+pub struct Block<const N: usize> {
+    vehicles: [Motion; N],
+    /// Steps at which each vehicle appears and leaves.
+    presence: [Presence; N],
+    conflict_s: [Lanes; 2],
+    distance: [Lanes; 2],
+    svo: Lanes,
+    gap: Lanes,
+    reward: Lanes,
+    /// Sums over the episode of the immediate rewards and of the two speeds.
+    earned: Lanes,
+    speeds: Lanes,
+    step: [u32; LANES],
+    recorded: [u32; LANES],
+    /// Index in the library of the SVO recorded at this step (at l_GT once the record is over).
+    reference: [u32; LANES],
+    scenario: [u32; LANES],
+    outcome: [Outcome; LANES],
+    random: Pcg64,
+}
+
+/// Steps in which a vehicle is there.
+#[derive(Clone, Copy, Debug)]
+struct Presence {
+    from: [u32; LANES],
+    until: [u32; LANES],
+}
+
+impl Presence {
+    #[inline]
+    fn at(&self, step: u32, lane: usize) -> bool {
+        (self.from[lane] <= step) & (step < self.until[lane])
+    }
+}
+
+impl<const N: usize> Block<N> {
+    const VEHICLES: () = assert!(N >= 2 && N <= 8, "an encounter has 2 to 8 vehicles");
+
+    /// Eight encounters drawn from `library` by a generator with this `seed` and `stream`.
+    #[must_use]
+    pub fn new(library: &Library, seed: u64, stream: u64) -> Self {
+        let () = Self::VEHICLES;
+        let never = Presence {
+            from: [u32::MAX; LANES],
+            until: [u32::MAX; LANES],
+        };
+        let mut block = Self {
+            vehicles: core::array::from_fn(|_| Motion::new()),
+            presence: [never; N],
+            conflict_s: [[0.0; LANES]; 2],
+            distance: [[0.0; LANES]; 2],
+            svo: [0.0; LANES],
+            gap: [f32::INFINITY; LANES],
+            reward: [0.0; LANES],
+            earned: [0.0; LANES],
+            speeds: [0.0; LANES],
+            step: [0; LANES],
+            recorded: [1; LANES],
+            reference: [0; LANES],
+            scenario: [0; LANES],
+            outcome: [Outcome::Running; LANES],
+            random: Pcg64::new(u128::from(seed), u128::from(stream)),
+        };
+        for lane in 0..LANES {
+            block.restart_lane(lane, library);
+        }
+        block
+    }
+
+    /// All vehicles: state and pose in each encounter.
+    #[must_use]
+    pub fn vehicles(&self) -> &[Motion; N] {
+        &self.vehicles
+    }
+
+    /// Whether `vehicle` is there in encounter `lane`.
+    #[must_use]
+    pub fn present(&self, vehicle: usize, lane: usize) -> bool {
+        vehicle < 2 || self.presence[vehicle].at(self.step[lane], lane)
+    }
+
+    /// Metres that the vehicle of this role has still to go to its conflict point.
+    #[must_use]
+    pub fn distance(&self, role: Role) -> &Lanes {
+        &self.distance[role as usize]
+    }
+
+    /// SVO (rad) of the left-turner; the other's is π/2 minus it.
+    #[must_use]
+    pub fn svo(&self) -> &Lanes {
+        &self.svo
+    }
+
+    /// Least separation (m, as in [`crate::OrientedBox::separation`]) of a judged vehicle from any vehicle
+    /// after the last step. Only its sign is meant where all are farther apart than a vehicle's diagonal:
+    /// it may be infinite there.
+    #[must_use]
+    pub fn gap(&self) -> &Lanes {
+        &self.gap
+    }
+
+    /// What the last step earned at once: −r₁ + r₄ of [`crate::reward`].
+    #[must_use]
+    pub fn reward(&self) -> &Lanes {
+        &self.reward
+    }
+
+    /// How far the episode in `lane` has come.
+    #[must_use]
+    pub fn outcome(&self, lane: usize) -> Outcome {
+        self.outcome[lane]
+    }
+
+    /// Number of the encounter in `lane`, as in the slice that the library was made of.
+    #[must_use]
+    pub fn encounter(&self, lane: usize) -> usize {
+        self.scenario[lane] as usize
+    }
+
+    /// Steps that the episode in `lane` has taken, beside the recorded length.
+    #[must_use]
+    pub fn length(&self, lane: usize) -> EpisodeLength {
+        EpisodeLength {
+            steps: self.step[lane],
+            recorded: self.recorded[lane],
+        }
+    }
+
+    /// Sum of the rewards of the episode in `lane`, replayed ones included; of use once it has ended.
+    #[must_use]
+    pub fn episode_return(&self, lane: usize) -> f32 {
+        self.earned[lane] + self.length(lane).replayed_total(self.speeds[lane])
+    }
+
+    /// Fills in the recorded accelerations (m/s²) of `vehicles`; 0 where the record is silent.
+    pub fn recorded(&self, library: &Library, vehicles: Range<usize>, into: &mut [Lanes; N]) {
+        for vehicle in vehicles {
+            for (lane, asked) in into[vehicle].iter_mut().enumerate() {
+                let track = library.track(library.scenario(self.scenario[lane]), vehicle);
+                *asked = track.map_or(0.0, |t| library.acceleration(t, self.step[lane]));
+            }
+        }
+    }
+
+    /// One step of 0.1 s under these accelerations, clamped to ±3 m/s², one of each vehicle.
+    ///
+    /// Encounters that have ended must be restarted first ([`Block::restart`], [`Block::place`]).
+    /// Never allocates. NaN is taken as full braking.
+    pub fn advance(&mut self, library: &Library, accelerations: &[Lanes; N]) {
+        for (motion, asked) in self.vehicles.iter_mut().zip(accelerations) {
+            motion.advance(library, asked);
+        }
+        for lane in 0..LANES {
+            self.step[lane] += 1;
+            self.reference[lane] += u32::from(self.step[lane] <= self.recorded[lane]);
+        }
+        if N > 2 {
+            self.traffic_appears(library);
+        }
+        self.score(library);
+    }
+
+    /// Starts a new episode, of an encounter drawn at random, wherever one has ended.
+    pub fn restart(&mut self, library: &Library) {
+        if self.outcome == [Outcome::Running; LANES] {
+            return;
+        }
+        for lane in 0..LANES {
+            if self.outcome[lane] != Outcome::Running {
+                self.restart_lane(lane, library);
+            }
+        }
+    }
+
+    fn restart_lane(&mut self, lane: usize, library: &Library) {
+        let drawn = self.random.random_range(0..library.count());
+        self.place(lane, library, drawn as usize);
+    }
+
+    /// Starts an episode of encounter number `encounter` (modulo their number) in `lane`.
+    pub fn place(&mut self, lane: usize, library: &Library, encounter: usize) {
+        let index = (encounter % library.len()) as u32;
+        let scenario = *library.scenario(index);
+        self.scenario[lane] = index;
+        self.step[lane] = 0;
+        self.recorded[lane] = scenario.recorded;
+        self.reference[lane] = scenario.svo;
+        self.outcome[lane] = Outcome::Running;
+        self.reward[lane] = 0.0;
+        self.earned[lane] = 0.0;
+        self.speeds[lane] = 0.0;
+        self.place_vehicles(lane, library, &scenario);
+        for (role, conflict_s) in library.conflict_s(&scenario).into_iter().enumerate() {
+            self.conflict_s[role][lane] = conflict_s;
+            self.distance[role][lane] = conflict_s - self.vehicles[role].s[lane];
+        }
+        let [d, other_d] = [self.distance[0][lane], self.distance[1][lane]];
+        let [v, other_v] = [self.vehicles[0].v[lane], self.vehicles[1].v[lane]];
+        self.svo[lane] = exact_svo(v, d, other_v, other_d, FRAC_PI_4);
+    }
+
+    fn place_vehicles(&mut self, lane: usize, library: &Library, scenario: &Scenario) {
+        for (number, (motion, presence)) in
+            self.vehicles.iter_mut().zip(&mut self.presence).enumerate()
+        {
+            let track = library.track(scenario, number);
+            (presence.from[lane], presence.until[lane]) =
+                track.map_or((u32::MAX, u32::MAX), |t| (t.appears, t.leaves));
+            if let Some(track) = track {
+                motion.place(lane, library, track);
+            }
+        }
+    }
+
+    /// Puts vehicles whose first step this is at the start of their record.
+    fn traffic_appears(&mut self, library: &Library) {
+        for vehicle in 2..N {
+            for lane in 0..LANES {
+                if self.presence[vehicle].from[lane] == self.step[lane] {
+                    let scenario = library.scenario(self.scenario[lane]);
+                    if let Some(track) = library.track(scenario, vehicle) {
+                        self.vehicles[vehicle].place(lane, library, track);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Distances, SVO, rewards and outcomes of the states that the step has led to.
+    #[inline]
+    fn score(&mut self, library: &Library) {
+        self.gap = self.least_gap(library);
+        let gap = &self.gap;
+        let (left, other) = (&self.vehicles[0], &self.vehicles[1]);
+        for (role, motion) in [left, other].into_iter().enumerate() {
+            for lane in 0..LANES {
+                self.distance[role][lane] = self.conflict_s[role][lane] - motion.s[lane];
+            }
+        }
+        let [d, other_d] = &self.distance;
+        self.svo = svo([&left.v, &other.v], [d, other_d], &self.svo);
+        let mut ended = false;
+        for lane in 0..LANES {
+            let arrived = (d[lane] <= 0.0) | (other_d[lane] <= 0.0);
+            let collided = gap[lane] <= 0.0;
+            let deviation = svo_deviation(self.svo[lane], library.svo(self.reference[lane]));
+            let compared = if self.step[lane] < self.recorded[lane] {
+                deviation
+            } else {
+                PAST_THE_RECORD
+            };
+            // At the conflict point itself the SVO is pinned, and says nothing.
+            let social = if arrived { 0.0 } else { -compared };
+            self.reward[lane] = social + if collided { COLLISION } else { 0.0 };
+            self.earned[lane] += self.reward[lane];
+            self.speeds[lane] += left.v[lane] + other.v[lane];
+            ended |= arrived | collided | (self.step[lane] >= 2 * self.recorded[lane]);
+        }
+        if ended {
+            for lane in 0..LANES {
+                self.outcome[lane] = self.verdict(lane);
+            }
+        }
+    }
+
+    fn verdict(&self, lane: usize) -> Outcome {
+        let past = [-self.distance[0][lane], -self.distance[1][lane]];
+        if self.gap[lane] <= 0.0 {
+            Outcome::Collided
+        } else if past[0] >= 0.0 || past[1] >= 0.0 {
+            // Both in one step: whoever has been past the point for longer.
+            let [v, other_v] = [self.vehicles[0].v[lane], self.vehicles[1].v[lane]];
+            let left = past[1] < 0.0 || (past[0] >= 0.0 && past[0] * other_v >= past[1] * v);
+            Outcome::Arrived(if left { Role::Left } else { Role::Other })
+        } else if self.step[lane] >= 2 * self.recorded[lane] {
+            Outcome::TimedOut
+        } else {
+            Outcome::Running
+        }
+    }
+
+    #[inline]
+    fn least_gap(&self, library: &Library) -> Lanes {
+        let mut least = [f32::INFINITY; LANES];
+        for ego in 0..2 {
+            for other in ego + 1..N {
+                self.narrow(ego, other, library, &mut least);
+            }
+        }
+        least
+    }
+
+    #[inline]
+    fn narrow(&self, ego: usize, other: usize, library: &Library, least: &mut Lanes) {
+        let (a, b) = (&self.vehicles[ego], &self.vehicles[other]);
+        let mut near = false;
+        for lane in 0..LANES {
+            let (dx, dy) = (b.x[lane] - a.x[lane], b.y[lane] - a.y[lane]);
+            near |= dx * dx + dy * dy <= library.reach_squared;
+        }
+        if !near {
+            return;
+        }
+        for (lane, least) in least.iter_mut().enumerate() {
+            let outline = a.outline(lane, library.footprint);
+            let gap = outline.separation(&b.outline(lane, library.footprint));
+            let counts = (gap < *least) & self.present(other, lane);
+            *least = if counts { gap } else { *least };
+        }
+    }
+}
