@@ -1,0 +1,34 @@
+//! Lines on the host's standard output, without `core::fmt`.
+
+use cortex_m_semihosting::hio;
+
+/// Writes `text`, or `text: number`.
+pub(crate) fn line(text: &str, number: Option<u32>) {
+    let Ok(mut out) = hio::hstdout() else {
+        return;
+    };
+    // An image without a console still has its exit status.
+    let _ = out.write_all(text.as_bytes());
+    if let Some(number) = number {
+        let _ = out.write_all(b": ");
+        let mut digits = [b'0'; 10];
+        let _ = out.write_all(decimal(number, &mut digits));
+    }
+    let _ = out.write_all(b"\n");
+}
+
+fn decimal(mut number: u32, digits: &mut [u8; 10]) -> &[u8] {
+    let mut length = 0;
+    for digit in digits.iter_mut().rev() {
+        *digit = b'0' + (number % 10) as u8;
+        number /= 10;
+        length += 1;
+        if number == 0 {
+            break;
+        }
+    }
+    digits
+        .last_chunk::<10>()
+        .and_then(|d| d.get(10 - length..))
+        .unwrap_or(b"?")
+}
