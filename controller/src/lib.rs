@@ -11,6 +11,7 @@
 extern crate std;
 
 pub mod conflict;
+pub mod controller;
 pub mod decision;
 pub mod features;
 pub mod geometry;
@@ -26,6 +27,7 @@ pub mod weights;
 pub mod zone;
 
 pub use conflict::ConflictKind;
+pub use controller::Controller;
 pub use decision::{Action, Breach, Cause, Decision, Intervention, Outlook, Reason};
 pub use features::FeatureSet;
 pub use geometry::{Footprint, Point, Pose};

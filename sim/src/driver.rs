@@ -6,6 +6,7 @@
 
 mod baseline;
 mod constant;
+mod controller;
 mod idm;
 mod logistic;
 mod nearer_first;
@@ -14,6 +15,7 @@ mod right_of_way;
 
 pub use baseline::{Baseline, FitError};
 pub use constant::{InitialSpeed, MeanSpeed};
+pub use controller::{Cede, observe, scene};
 pub use idm::Idm;
 pub use logistic::Logistic;
 pub use nearer_first::NearerFirst;

@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 pub mod batch;
+pub mod campaign;
 pub mod data;
 pub mod driver;
 pub mod encounter;
@@ -17,8 +18,8 @@ pub mod overlap;
 pub mod reward;
 pub mod statistics;
 pub mod synthetic;
-pub mod weights;
 pub mod transparency;
+pub mod weights;
 
 pub use data::Dataset;
 pub use driver::{Driver, DriverFactory, State, View};

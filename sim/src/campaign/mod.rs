@@ -1,0 +1,310 @@
+//! Adversarial campaigns: others that try to make a shielded vehicle collide, within the contract.
+//!
+//! One vehicle (or every one) is driven by a careless proposer behind a [`Shield`];
+//! the others do their worst: random, bang-bang, or aimed at it. Commands come late, sensors err and
+//! black out, all within the contract. An overlap is then the shield's fault.
+
+mod adversary;
+mod scenario;
+
+pub use scenario::{Scenario, Setup};
+
+use crate::driver::State;
+use crate::encounter::STEP;
+use crate::kinematics::advance;
+use crate::overlap::OrientedBox;
+use adversary::Adversary;
+use cede_controller::shield::{Rules, Sound};
+use cede_controller::{Cause, Decision, Fault, Footprint, Observation, Pose, Shield, Vehicle};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+use rayon::prelude::*;
+
+/// Most other vehicles of a scenario.
+pub const OTHERS: usize = cede_controller::scene::MAX_OTHERS;
+
+/// What a campaign saw.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Scenarios that were run: those that begin with a verified plan.
+    pub scenarios: u64,
+    /// Steps of shielded vehicles.
+    pub steps: u64,
+    /// Scenarios in which a shielded vehicle overlapped with another.
+    pub overlaps: u64,
+    /// Steps without a verified plan although nobody broke the contract.
+    pub unverified: u64,
+    /// Steps at which somebody was said to have broken the contract, although nobody did.
+    pub false_breaches: u64,
+    /// Steps at which the shield intervened.
+    pub interventions: u64,
+    /// Scenarios in which every shielded vehicle had passed all its zones at the end.
+    pub cleared: u64,
+}
+
+impl Tally {
+    fn plus(self, other: Self) -> Self {
+        Self {
+            scenarios: self.scenarios + other.scenarios,
+            steps: self.steps + other.steps,
+            overlaps: self.overlaps + other.overlaps,
+            unverified: self.unverified + other.unverified,
+            false_breaches: self.false_breaches + other.false_breaches,
+            interventions: self.interventions + other.interventions,
+            cleared: self.cleared + other.cleared,
+        }
+    }
+}
+
+/// Says which vehicles touch: the simulator's own box test, or another judge.
+pub trait Overlap {
+    /// Whether vehicle `i` touches `j`; all of one moment are asked before the next begins.
+    fn touching(&mut self, poses: &[Pose], i: usize, j: usize) -> bool;
+}
+
+/// The simulator's own box test.
+#[derive(Clone, Copy, Debug)]
+pub struct Boxes;
+
+impl Overlap for Boxes {
+    fn touching(&mut self, poses: &[Pose], i: usize, j: usize) -> bool {
+        match (poses.get(i), poses.get(j)) {
+            (Some(&a), Some(&b)) => {
+                let paper = |pose| OrientedBox::new(pose, Footprint::PAPER);
+                paper(a).overlaps(&paper(b))
+            }
+            _ => false,
+        }
+    }
+}
+
+/// Runs `scenarios` scenarios of `setup` with shields of rules `R`; scenario number i has seed `seed` + i.
+///
+/// The same seed gives the same tally on any number of threads.
+#[must_use]
+pub fn campaign<R: Rules>(setup: Setup, scenarios: u64, seed: u64) -> Tally {
+    (seed..seed.saturating_add(scenarios))
+        .into_par_iter()
+        .map(|seed| run::<R>(setup, seed, true, &mut Boxes))
+        .reduce(Tally::default, Tally::plus)
+}
+
+/// [`campaign`] with the shield switched off: the proposals pass as they are.
+#[must_use]
+pub fn unshielded(setup: Setup, scenarios: u64, seed: u64) -> Tally {
+    (seed..seed.saturating_add(scenarios))
+        .into_par_iter()
+        .map(|seed| run::<Sound>(setup, seed, false, &mut Boxes))
+        .reduce(Tally::default, Tally::plus)
+}
+
+/// One scenario, judged by `judge`.
+pub fn run<R: Rules>(setup: Setup, seed: u64, shielded: bool, judge: &mut impl Overlap) -> Tally {
+    let mut rng = Pcg64::seed_from_u64(seed);
+    let Some(scenario) = Scenario::random(setup, &mut rng) else {
+        return Tally::default();
+    };
+    World::<R>::new(scenario, rng).run(shielded, judge)
+}
+
+/// What drives one vehicle.
+enum Mind<R: Rules> {
+    Shielded {
+        shield: Box<Shield<OTHERS, R>>,
+        careless: Careless,
+        /// Periods for which the sensors are still blind.
+        blind: u32,
+    },
+    Adversary(Adversary),
+}
+
+/// A proposer that knows nothing: it holds an acceleration for a while.
+struct Careless {
+    acceleration: f32,
+    left: u32,
+}
+
+impl Careless {
+    fn propose(&mut self, rng: &mut Pcg64) -> f32 {
+        if self.left == 0 {
+            self.left = rng.random_range(1..20);
+            self.acceleration = match rng.random_range(0..4) {
+                0 => rng.random_range(-3.0..3.0),
+                1 => 0.0,
+                _ => 3.0,
+            };
+        }
+        self.left -= 1;
+        self.acceleration
+    }
+}
+
+struct World<R: Rules> {
+    scenario: Scenario,
+    rng: Pcg64,
+    states: Vec<State>,
+    minds: Vec<Mind<R>>,
+    /// The acceleration in effect, and the command that may come late.
+    in_effect: Vec<f32>,
+    commands: Vec<f32>,
+}
+
+impl<R: Rules> World<R> {
+    fn new(scenario: Scenario, mut rng: Pcg64) -> Self {
+        let count = scenario.vehicles.len();
+        let minds = (0..count)
+            .map(|i| match Shield::with_rules(scenario.setup.contract) {
+                Ok(shield) if i == 0 || scenario.setup.everyone => Mind::Shielded {
+                    shield: Box::new(shield),
+                    careless: Careless {
+                        acceleration: 0.0,
+                        left: 0,
+                    },
+                    blind: 0,
+                },
+                _ => Mind::Adversary(Adversary::random(&mut rng)),
+            })
+            .collect();
+        Self {
+            states: scenario.vehicles.iter().map(|v| v.start).collect(),
+            in_effect: vec![0.0; count],
+            commands: vec![0.0; count],
+            minds,
+            scenario,
+            rng,
+        }
+    }
+
+    fn run(mut self, shielded: bool, judge: &mut impl Overlap) -> Tally {
+        let mut tally = Tally::default();
+        for step in 0..self.scenario.setup.steps {
+            for i in 0..self.minds.len() {
+                let decision = self.decide(i, step, shielded);
+                if let Some(decision) = decision {
+                    let unverified = decision.cause == Cause::Fallback(Fault::Unverified);
+                    if step == 0 && unverified && shielded {
+                        // Switched on in danger: nothing is promised.
+                        return Tally::default();
+                    }
+                    tally.steps += 1;
+                    tally.unverified += u64::from(unverified);
+                    tally.false_breaches += u64::from(decision.breach.is_some());
+                    tally.interventions += u64::from(matches!(decision.cause, Cause::Shielded(_)));
+                }
+            }
+            self.advance();
+            if self.collision(judge) {
+                tally.overlaps = 1;
+                break;
+            }
+        }
+        tally.scenarios = 1;
+        tally.cleared = u64::from(self.cleared());
+        tally
+    }
+
+    /// Gives vehicle `i` its command; a shielded one's decision is returned.
+    fn decide(&mut self, i: usize, step: u32, shielded: bool) -> Option<Decision> {
+        let observation = self.observe(i);
+        let (command, decision) = match &mut self.minds[i] {
+            Mind::Adversary(adversary) => {
+                let command = adversary.accelerate(&self.scenario, &self.states, i, &mut self.rng);
+                (command, None)
+            }
+            Mind::Shielded {
+                shield,
+                careless,
+                blind,
+            } => {
+                let proposal = careless.propose(&mut self.rng);
+                let mut observation = observation;
+                if *blind > 0 {
+                    *blind -= 1;
+                    observation.ego.s = f32::NAN;
+                } else if step > 0 && self.rng.random_bool(self.scenario.setup.blackouts) {
+                    *blind = self.rng.random_range(1..40);
+                }
+                let scene = &self.scenario.vehicles[i].scene;
+                let decision = shield.filter(scene, &observation, proposal);
+                let command = if shielded {
+                    decision.acceleration
+                } else {
+                    proposal
+                };
+                (command, Some(decision))
+            }
+        };
+        self.commands[i] = command;
+        decision
+    }
+
+    /// What vehicle `i` senses.
+    fn observe(&mut self, i: usize) -> Observation<OTHERS> {
+        let contract = self.scenario.setup.contract;
+        let rng = &mut self.rng;
+        let mut sense = |j: usize| {
+            let mut error = |size: f32| size * rng.random_range(-1.0..=1.0_f32);
+            let state = self.states[j];
+            let speed = state.v + error(contract.speed_error);
+            Vehicle {
+                s: state.s + error(contract.position_error),
+                speed: if speed > 0.0 { speed } else { 0.0 },
+                pose: self.scenario.vehicles[j].route.pose(state.s),
+            }
+        };
+        let mut observation = Observation {
+            ego: sense(i),
+            others: [None; OTHERS],
+        };
+        let others = (0..self.states.len()).filter(|&j| j != i);
+        for (slot, j) in observation.others.iter_mut().zip(others) {
+            *slot = Some(sense(j));
+        }
+        observation
+    }
+
+    /// One step, in two halves if a command takes effect in between.
+    fn advance(&mut self) {
+        let late = f64::from(self.scenario.setup.contract.latency / STEP);
+        for i in 0..self.states.len() {
+            let shielded = matches!(self.minds[i], Mind::Shielded { .. });
+            // Late by a whole period or not at all: the extremes of what the contract allows.
+            let held = shielded && late > 0.5 && self.rng.random_bool(0.5);
+            let acceleration = if held {
+                self.in_effect[i]
+            } else {
+                self.commands[i]
+            };
+            self.states[i] = advance(self.states[i], acceleration);
+            self.in_effect[i] = self.commands[i];
+        }
+    }
+
+    fn collision(&self, judge: &mut impl Overlap) -> bool {
+        let poses: Vec<Pose> = self
+            .scenario
+            .vehicles
+            .iter()
+            .zip(&self.states)
+            .map(|(vehicle, state)| vehicle.route.pose(state.s))
+            .collect();
+        let egos = if self.scenario.setup.everyone {
+            poses.len()
+        } else {
+            1
+        };
+        (0..egos).any(|i| (i + 1..poses.len()).any(|j| judge.touching(&poses, i, j)))
+    }
+
+    /// Whether every shielded vehicle has passed the zones in which routes cross.
+    fn cleared(&self) -> bool {
+        let vehicles = self.scenario.vehicles.iter().zip(&self.states);
+        vehicles
+            .zip(&self.minds)
+            .filter(|(_, mind)| matches!(mind, Mind::Shielded { .. }))
+            .all(|((vehicle, state), _)| {
+                let zones = vehicle.scene.meetings().iter().flat_map(|m| m.zones());
+                zones.filter(|z| !z.is_lane()).all(|z| state.s >= z.ego.to)
+            })
+    }
+}

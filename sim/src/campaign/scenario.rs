@@ -1,0 +1,208 @@
+//! Random scenarios: vehicles on random routes through one intersection.
+
+use super::OTHERS;
+use crate::driver::State;
+use crate::overlap::OrientedBox;
+use cede_controller::shield::margin::safe_gap;
+use cede_controller::{Contract, Footprint, Path, Point, RightOfWay, Route, Scene, Zone};
+use rand::RngExt;
+use rand_pcg::Pcg64;
+use std::f32::consts::{FRAC_PI_2, TAU};
+
+/// What kind of scenarios a campaign runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setup {
+    /// What the shields assume, and the others keep.
+    pub contract: Contract,
+    /// Vehicles, at least 2 and at most 9.
+    pub vehicles: usize,
+    /// Every vehicle is shielded, not only the first.
+    pub everyone: bool,
+    /// Probability at each step that a shielded vehicle's sensors go blind for up to 4 s.
+    pub blackouts: f64,
+    /// Vehicles begin at rest near their zones.
+    pub at_rest: bool,
+    /// Length in steps.
+    pub steps: u32,
+}
+
+/// A vehicle of a scenario.
+#[derive(Clone, Debug)]
+pub(super) struct Entrant {
+    pub(super) route: Route<32>,
+    pub(super) start: State,
+    /// The others' routes as it meets them, in the order of the vehicles without itself.
+    pub(super) scene: Scene<OTHERS>,
+}
+
+/// Vehicles that are about to meet.
+#[derive(Clone, Debug)]
+pub struct Scenario {
+    pub(super) setup: Setup,
+    pub(super) vehicles: Vec<Entrant>,
+}
+
+/// Where a lane enters or leaves the intersection, and the outward direction there.
+#[derive(Clone, Copy)]
+struct Gate {
+    at: Point,
+    outward: Point,
+}
+
+/// How often a place for a vehicle is looked for.
+const ATTEMPTS: u32 = 20;
+
+/// Metres from a route's start to where its lane begins to bend.
+const APPROACH: f32 = 60.0;
+
+impl Scenario {
+    /// A random scenario with as many vehicles as `setup` asks for, or fewer if there is no room;
+    /// `None` without room for two, or if their number is out of range.
+    #[must_use]
+    pub fn random(setup: Setup, rng: &mut Pcg64) -> Option<Self> {
+        if setup.vehicles < 2 || setup.vehicles > OTHERS + 1 {
+            return None;
+        }
+        let layout = Layout::random(rng);
+        let mut placed: Vec<(Route<32>, State)> = Vec::new();
+        for _ in 0..setup.vehicles {
+            let mut candidates = (0..ATTEMPTS)
+                .filter_map(|_| Some((layout.route(rng)?, start(setup, rng))))
+                .filter(|candidate| fits(setup, candidate, &placed));
+            if let Some(found) = candidates.next() {
+                placed.push(found);
+            }
+        }
+        if placed.len() < 2 {
+            return None;
+        }
+        let vehicles = (0..placed.len())
+            .map(|i| {
+                Some(Entrant {
+                    route: placed[i].0.clone(),
+                    start: placed[i].1,
+                    scene: scene(&placed, i)?,
+                })
+            })
+            .collect::<Option<_>>()?;
+        Some(Self { setup, vehicles })
+    }
+}
+
+fn path(route: &Route<32>) -> Path<'_, 32> {
+    Path {
+        route,
+        footprint: Footprint::PAPER,
+    }
+}
+
+/// The scene of vehicle `i`; in a tie, vehicles with lower numbers go first.
+fn scene(placed: &[(Route<32>, State)], i: usize) -> Option<Scene<OTHERS>> {
+    let numbers: Vec<usize> = (0..placed.len()).filter(|&j| j != i).collect();
+    let others: Vec<_> = numbers.iter().map(|&j| path(&placed[j].0)).collect();
+    let mut scene = Scene::new(path(&placed[i].0), &others).ok()?;
+    for (number, &j) in numbers.iter().enumerate() {
+        let right_of_way = if i < j {
+            RightOfWay::Ego
+        } else {
+            RightOfWay::Other
+        };
+        scene.set_right_of_way(number, right_of_way);
+    }
+    Some(scene)
+}
+
+fn start(setup: Setup, rng: &mut Pcg64) -> State {
+    if setup.at_rest {
+        return State {
+            s: APPROACH - rng.random_range(2.0..8.0),
+            v: 0.0,
+        };
+    }
+    State {
+        s: APPROACH - rng.random_range(-15.0..45.0_f32),
+        v: if rng.random_bool(0.2) {
+            0.0
+        } else {
+            rng.random_range(0.0..14.0)
+        },
+    }
+}
+
+/// Whether a vehicle has room among those that are there: nobody overlaps, and whoever is behind another
+/// in its lane can stop behind it.
+fn fits(setup: Setup, (route, start): &(Route<32>, State), placed: &[(Route<32>, State)]) -> bool {
+    let covers =
+        |route: &Route<32>, state: &State| OrientedBox::new(route.pose(state.s), Footprint::PAPER);
+    let here = covers(route, start);
+    placed.iter().all(|(other_route, other)| {
+        let apart = here.separation(&covers(other_route, other)) > 0.5;
+        apart
+            && Scene::<1>::new(path(route), &[path(other_route)]).is_ok_and(|scene| {
+                let zones = || scene.meetings().iter().flat_map(|m| m.zones());
+                zones().all(|zone| leaves_room(setup, zone, start, other))
+                    && zones().all(|zone| leaves_room(setup, &zone.swapped(), other, start))
+            })
+    })
+}
+
+/// Whether one who is behind `ego` in the lane of `zone` can still stop behind it.
+fn leaves_room(setup: Setup, zone: &Zone, ego: &State, other: &State) -> bool {
+    let gap = ego.s - other.s - zone.lead.to;
+    let ahead = zone.is_lane() && ego.s >= zone.ego.from && gap > -5.0;
+    !ahead || other.s > zone.other.to || gap >= safe_gap(&setup.contract, other.v, ego.v)
+}
+
+/// The arms of an intersection.
+struct Layout {
+    arms: Vec<f32>,
+    /// Half the distance between the two directions' lanes, in m.
+    offset: f32,
+    /// From the centre to where lanes begin to bend, in m.
+    radius: f32,
+}
+
+impl Layout {
+    fn random(rng: &mut Pcg64) -> Self {
+        let turn = rng.random_range(0.0..TAU);
+        let arms = (0..4_u8)
+            .map(|i| turn + FRAC_PI_2 * f32::from(i) + rng.random_range(-0.4..0.4_f32))
+            .collect();
+        Self {
+            arms,
+            offset: rng.random_range(1.2..2.2),
+            radius: rng.random_range(6.0..12.0),
+        }
+    }
+
+    fn route(&self, rng: &mut Pcg64) -> Option<Route<32>> {
+        let from = rng.random_range(0..self.arms.len());
+        let to = (from + rng.random_range(1..self.arms.len())) % self.arms.len();
+        let (entry, exit) = (self.gate(from, -1.0), self.gate(to, 1.0));
+        let far = |gate: Gate, distance: f32| gate.at + gate.outward * distance;
+        // A cubic curve with its inner control points 0.55 of the radius inwards, in 12 pieces.
+        let inner = 0.55 * self.radius;
+        let control = [entry.at, far(entry, -inner), far(exit, -inner), exit.at];
+        let bend = (0..=12_u8).map(|i| bezier(control, f32::from(i) / 12.0));
+        let points = std::iter::once(far(entry, APPROACH))
+            .chain(bend)
+            .chain(std::iter::once(far(exit, 80.0)));
+        Route::new(points).ok()
+    }
+
+    /// The lane of arm `arm` that enters (`side` = −1) or leaves (`side` = 1), on the right-hand side.
+    fn gate(&self, arm: usize, side: f32) -> Gate {
+        let angle = self.arms[arm];
+        let outward = Point::new(angle.cos(), angle.sin());
+        let right = Point::new(outward.y, -outward.x);
+        Gate {
+            at: outward * self.radius + right * (side * self.offset),
+            outward,
+        }
+    }
+}
+
+fn bezier([a, b, c, d]: [Point; 4], t: f32) -> Point {
+    let u = 1.0 - t;
+    a * (u * u * u) + b * (3.0 * u * u * t) + c * (3.0 * u * t * t) + d * (t * t * t)
+}

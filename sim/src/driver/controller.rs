@@ -1,0 +1,103 @@
+//! The controller itself, as a driver: the code that runs in the vehicle.
+
+use super::{Driver, DriverFactory, State, View};
+use crate::encounter::{Encounter, Role};
+use cede_controller::{
+    Cause, Contract, ContractError, Controller, Decision, Footprint, Observation, Part, Path,
+    Policy, Scene, Vehicle,
+};
+
+/// Cede: a policy behind the shield. Each vehicle considers the one that it meets.
+#[derive(Clone, Debug)]
+pub struct Cede {
+    policy: Policy<'static>,
+    contract: Contract,
+}
+
+impl Cede {
+    /// Drives with `policy`; the shield assumes `contract`.
+    ///
+    /// # Errors
+    /// The first number of `contract` that is out of its range.
+    pub fn new(policy: Policy<'static>, contract: Contract) -> Result<Self, ContractError> {
+        let contract = contract.checked()?;
+        Ok(Self { policy, contract })
+    }
+}
+
+impl DriverFactory for Cede {
+    fn name(&self) -> &str {
+        "cede"
+    }
+
+    fn driver(&self, encounter: &Encounter, ego: usize, _: u64) -> Box<dyn Driver> {
+        let part = if ego == Role::Left as usize {
+            Part::Left
+        } else {
+            Part::Other
+        };
+        let controller = Controller::new(self.policy, self.contract, part);
+        match (controller, scene(encounter, ego)) {
+            (Ok(controller), Some(scene)) => Box::new(Seat {
+                controller,
+                scene,
+                last: None,
+            }),
+            // The contract was checked; without a vehicle to meet there is nothing to decide.
+            _ => Box::new(Nobody),
+        }
+    }
+}
+
+/// The scene of judged vehicle `ego` with the one that it meets; `None` if there is none.
+#[must_use]
+pub fn scene(encounter: &Encounter, ego: usize) -> Option<Scene<1>> {
+    let path = |index: usize| {
+        let participant = encounter.participants.get(index)?;
+        Some(Path {
+            route: &participant.route,
+            footprint: Footprint::PAPER,
+        })
+    };
+    Scene::new(path(ego)?, &[path(1_usize.checked_sub(ego)?)?]).ok()
+}
+
+/// What vehicle `view.ego` senses of itself and the one that it meets; `None` if it is not there itself.
+#[must_use]
+pub fn observe(view: &View<'_>) -> Option<Observation<1>> {
+    let vehicle = |(participant, state): (&crate::Participant, State)| Vehicle {
+        s: state.s,
+        speed: state.v,
+        pose: participant.route.pose(state.s),
+    };
+    Some(Observation {
+        ego: vehicle(view.own()?),
+        others: [view.rival().map(vehicle)],
+    })
+}
+
+struct Seat {
+    controller: Controller<'static, 1>,
+    scene: Scene<1>,
+    last: Option<Decision>,
+}
+
+impl Driver for Seat {
+    fn accelerate(&mut self, view: &View<'_>) -> f32 {
+        self.last = observe(view).map(|seen| self.controller.decide(&self.scene, &seen));
+        self.last.map_or(0.0, |decision| decision.acceleration)
+    }
+
+    fn shielded(&self) -> bool {
+        self.last
+            .is_some_and(|decision| decision.cause != Cause::Policy)
+    }
+}
+
+struct Nobody;
+
+impl Driver for Nobody {
+    fn accelerate(&mut self, _: &View<'_>) -> f32 {
+        0.0
+    }
+}
