@@ -20,9 +20,9 @@
 //! ```
 
 mod block;
+mod lanes;
 mod library;
 mod motion;
-mod orientation;
 
 pub use block::{Block, Outcome};
 pub use library::{Library, LibraryError};

@@ -1,16 +1,17 @@
 //! Eight encounters in lockstep: the unit that a batch steps, and that vector instructions work on.
 
+use super::lanes::{svo, svo_deviation};
 use super::library::{Library, Scenario};
 use super::motion::Motion;
-use super::orientation::svo;
 use super::{LANES, Lanes};
 use crate::encounter::Role;
-use crate::reward::{COLLISION, EpisodeLength, PAST_THE_RECORD, svo_deviation};
+use crate::reward::{COLLISION, EpisodeLength, PAST_THE_RECORD};
 use cede_controller::svo::svo as exact_svo;
 use core::f32::consts::FRAC_PI_4;
 use core::ops::Range;
 use rand::RngExt;
 use rand_pcg::Pcg64;
+use wide::f32x8;
 
 /// How far an episode has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -42,25 +43,28 @@ pub struct Block<const N: usize> {
     /// Sums over the episode of the immediate rewards and of the two speeds.
     earned: Lanes,
     speeds: Lanes,
-    step: [u32; LANES],
-    recorded: [u32; LANES],
+    /// Steps taken and recorded; whole numbers, in the registers that they are compared in.
+    step: Lanes,
+    recorded: Lanes,
     /// Index in the library of the SVO recorded at this step (at l_GT once the record is over).
     reference: [u32; LANES],
     scenario: [u32; LANES],
     outcome: [Outcome; LANES],
+    /// Bit `i`: encounter `i` has ended.
+    ended: u32,
     random: Pcg64,
 }
 
-/// Steps in which a vehicle is there.
+/// Steps in which a vehicle is there: from the first to before the second; whole numbers.
 #[derive(Clone, Copy, Debug)]
 struct Presence {
-    from: [u32; LANES],
-    until: [u32; LANES],
+    from: Lanes,
+    until: Lanes,
 }
 
 impl Presence {
     #[inline]
-    fn at(&self, step: u32, lane: usize) -> bool {
+    fn at(&self, step: f32, lane: usize) -> bool {
         (self.from[lane] <= step) & (step < self.until[lane])
     }
 }
@@ -73,8 +77,8 @@ impl<const N: usize> Block<N> {
     pub fn new(library: &Library, seed: u64, stream: u64) -> Self {
         let () = Self::VEHICLES;
         let never = Presence {
-            from: [u32::MAX; LANES],
-            until: [u32::MAX; LANES],
+            from: [f32::INFINITY; LANES],
+            until: [f32::INFINITY; LANES],
         };
         let mut block = Self {
             vehicles: core::array::from_fn(|_| Motion::new()),
@@ -86,11 +90,12 @@ impl<const N: usize> Block<N> {
             reward: [0.0; LANES],
             earned: [0.0; LANES],
             speeds: [0.0; LANES],
-            step: [0; LANES],
-            recorded: [1; LANES],
+            step: [0.0; LANES],
+            recorded: [1.0; LANES],
             reference: [0; LANES],
             scenario: [0; LANES],
             outcome: [Outcome::Running; LANES],
+            ended: 0,
             random: Pcg64::new(u128::from(seed), u128::from(stream)),
         };
         for lane in 0..LANES {
@@ -153,8 +158,8 @@ impl<const N: usize> Block<N> {
     #[must_use]
     pub fn length(&self, lane: usize) -> EpisodeLength {
         EpisodeLength {
-            steps: self.step[lane],
-            recorded: self.recorded[lane],
+            steps: self.step[lane] as u32,
+            recorded: self.recorded[lane] as u32,
         }
     }
 
@@ -169,7 +174,7 @@ impl<const N: usize> Block<N> {
         for vehicle in vehicles {
             for (lane, asked) in into[vehicle].iter_mut().enumerate() {
                 let track = library.track(library.scenario(self.scenario[lane]), vehicle);
-                *asked = track.map_or(0.0, |t| library.acceleration(t, self.step[lane]));
+                *asked = track.map_or(0.0, |t| library.acceleration(t, self.step[lane] as u32));
             }
         }
     }
@@ -183,7 +188,7 @@ impl<const N: usize> Block<N> {
             motion.advance(library, asked);
         }
         for lane in 0..LANES {
-            self.step[lane] += 1;
+            self.step[lane] += 1.0;
             self.reference[lane] += u32::from(self.step[lane] <= self.recorded[lane]);
         }
         if N > 2 {
@@ -194,13 +199,10 @@ impl<const N: usize> Block<N> {
 
     /// Starts a new episode, of an encounter drawn at random, wherever one has ended.
     pub fn restart(&mut self, library: &Library) {
-        if self.outcome == [Outcome::Running; LANES] {
-            return;
-        }
-        for lane in 0..LANES {
-            if self.outcome[lane] != Outcome::Running {
-                self.restart_lane(lane, library);
-            }
+        let mut ended = core::mem::take(&mut self.ended);
+        while ended != 0 {
+            self.restart_lane(ended.trailing_zeros() as usize, library);
+            ended &= ended - 1;
         }
     }
 
@@ -214,8 +216,9 @@ impl<const N: usize> Block<N> {
         let index = (encounter % library.len()) as u32;
         let scenario = *library.scenario(index);
         self.scenario[lane] = index;
-        self.step[lane] = 0;
-        self.recorded[lane] = scenario.recorded;
+        self.step[lane] = 0.0;
+        self.recorded[lane] = scenario.recorded as f32;
+        self.ended &= !(1 << lane);
         self.reference[lane] = scenario.svo;
         self.outcome[lane] = Outcome::Running;
         self.reward[lane] = 0.0;
@@ -236,8 +239,10 @@ impl<const N: usize> Block<N> {
             self.vehicles.iter_mut().zip(&mut self.presence).enumerate()
         {
             let track = library.track(scenario, number);
-            (presence.from[lane], presence.until[lane]) =
-                track.map_or((u32::MAX, u32::MAX), |t| (t.appears, t.leaves));
+            (presence.from[lane], presence.until[lane]) = track
+                .map_or((f32::INFINITY, f32::INFINITY), |t| {
+                    (t.appears as f32, t.leaves as f32)
+                });
             if let Some(track) = track {
                 motion.place(lane, library, track);
             }
@@ -262,36 +267,38 @@ impl<const N: usize> Block<N> {
     #[inline]
     fn score(&mut self, library: &Library) {
         self.gap = self.least_gap(library);
-        let gap = &self.gap;
-        let (left, other) = (&self.vehicles[0], &self.vehicles[1]);
-        for (role, motion) in [left, other].into_iter().enumerate() {
-            for lane in 0..LANES {
-                self.distance[role][lane] = self.conflict_s[role][lane] - motion.s[lane];
-            }
-        }
-        let [d, other_d] = &self.distance;
-        self.svo = svo([&left.v, &other.v], [d, other_d], &self.svo);
-        let mut ended = false;
-        for lane in 0..LANES {
-            let arrived = (d[lane] <= 0.0) | (other_d[lane] <= 0.0);
-            let collided = gap[lane] <= 0.0;
-            let deviation = svo_deviation(self.svo[lane], library.svo(self.reference[lane]));
-            let compared = if self.step[lane] < self.recorded[lane] {
-                deviation
-            } else {
-                PAST_THE_RECORD
-            };
-            // At the conflict point itself the SVO is pinned, and says nothing.
-            let social = if arrived { 0.0 } else { -compared };
-            self.reward[lane] = social + if collided { COLLISION } else { 0.0 };
-            self.earned[lane] += self.reward[lane];
-            self.speeds[lane] += left.v[lane] + other.v[lane];
-            ended |= arrived | collided | (self.step[lane] >= 2 * self.recorded[lane]);
-        }
-        if ended {
-            for lane in 0..LANES {
-                self.outcome[lane] = self.verdict(lane);
-            }
+        let [left, other] = [&self.vehicles[0], &self.vehicles[1]];
+        let speed = [left.v, other.v].map(f32x8::from);
+        let distance = [
+            f32x8::from(self.conflict_s[0]) - f32x8::from(left.s),
+            f32x8::from(self.conflict_s[1]) - f32x8::from(other.s),
+        ];
+        self.distance = distance.map(f32x8::to_array);
+        let svo = svo(speed, distance, self.svo.into());
+        self.svo = svo.to_array();
+
+        let (step, recorded) = (f32x8::from(self.step), f32x8::from(self.recorded));
+        let arrived = distance[0].simd_le(f32x8::ZERO) | distance[1].simd_le(f32x8::ZERO);
+        let collided = f32x8::from(self.gap).simd_le(f32x8::ZERO);
+        let late = step.simd_ge(recorded + recorded);
+
+        let reference = f32x8::from(self.reference.map(|index| library.svo(index)));
+        let past_record = f32x8::splat(PAST_THE_RECORD);
+        let deviation = svo_deviation(svo, reference);
+        let compared = step.simd_lt(recorded).bitselect(deviation, past_record);
+        // At the conflict point itself the SVO is pinned, and says nothing.
+        let social = arrived.bitselect(f32x8::ZERO, compared);
+        let reward = collided.bitselect(f32x8::splat(COLLISION), f32x8::ZERO) - social;
+        self.reward = reward.to_array();
+        self.earned = (f32x8::from(self.earned) + reward).to_array();
+        self.speeds = (f32x8::from(self.speeds) + (speed[0] + speed[1])).to_array();
+
+        let mut ended = (arrived | collided | late).to_bitmask();
+        self.ended |= ended;
+        while ended != 0 {
+            let lane = ended.trailing_zeros() as usize;
+            self.outcome[lane] = self.verdict(lane);
+            ended &= ended - 1;
         }
     }
 
@@ -304,7 +311,7 @@ impl<const N: usize> Block<N> {
             let [v, other_v] = [self.vehicles[0].v[lane], self.vehicles[1].v[lane]];
             let left = past[1] < 0.0 || (past[0] >= 0.0 && past[0] * other_v >= past[1] * v);
             Outcome::Arrived(if left { Role::Left } else { Role::Other })
-        } else if self.step[lane] >= 2 * self.recorded[lane] {
+        } else if self.step[lane] >= 2.0 * self.recorded[lane] {
             Outcome::TimedOut
         } else {
             Outcome::Running

@@ -1,11 +1,12 @@
 //! One vehicle of each encounter of a block: state, pose, and the segment of the route that it is on.
 
+use super::lanes::advance;
 use super::library::{Library, Track};
 use super::{LANES, Lanes};
 use crate::driver::State;
-use crate::kinematics::{advance, clamp_acceleration};
 use crate::overlap::OrientedBox;
 use cede_controller::{Footprint, Point, Pose};
+use wide::f32x8;
 
 /// One vehicle of each of the encounters that a block steps together; entry `i` of each array
 /// belongs to encounter `i`.
@@ -84,39 +85,36 @@ impl Motion {
         self.follow(library);
     }
 
-    /// One step under `accelerations` (m/s²).
+    /// One step under `accelerations` (m/s²), clamped.
     #[inline]
     pub(super) fn advance(&mut self, library: &Library, accelerations: &Lanes) {
-        let (s, v) = (self.s, self.v);
-        for lane in 0..LANES {
-            let state = State {
-                s: s[lane],
-                v: v[lane],
-            };
-            let next = advance(state, clamp_acceleration(accelerations[lane]));
-            self.s[lane] = next.s;
-            self.v[lane] = next.v;
-        }
+        let (s, v) = advance(self.s.into(), self.v.into(), (*accelerations).into());
+        self.s = s.to_array();
+        self.v = v.to_array();
         self.follow(library);
     }
 
     /// Moves on to the segments that hold `s`, and takes the poses from them.
     #[inline]
     fn follow(&mut self, library: &Library) {
-        // Most vehicles stay on their segment most of the time.
-        let left = |lane: usize| self.s[lane] >= self.to_s[lane];
-        if (0..LANES).fold(false, |any, lane| any | left(lane)) {
-            for lane in 0..LANES {
-                while self.s[lane] >= self.to_s[lane] {
-                    self.segment[lane] += 1;
-                    self.enter(lane, library);
-                }
-            }
+        let s = f32x8::from(self.s);
+        let mut left = s.simd_ge(f32x8::from(self.to_s)).to_bitmask();
+        while left != 0 {
+            self.leave_segment(left.trailing_zeros() as usize, library);
+            left &= left - 1;
         }
-        for lane in 0..LANES {
-            let along = self.s[lane] - self.from_s[lane];
-            self.x[lane] = self.from_x[lane] + self.cos[lane] * along;
-            self.y[lane] = self.from_y[lane] + self.sin[lane] * along;
+        let along = s - f32x8::from(self.from_s);
+        let at = |from: Lanes, direction: Lanes| {
+            (f32x8::from(from) + f32x8::from(direction) * along).to_array()
+        };
+        self.x = at(self.from_x, self.cos);
+        self.y = at(self.from_y, self.sin);
+    }
+
+    fn leave_segment(&mut self, lane: usize, library: &Library) {
+        while self.s[lane] >= self.to_s[lane] {
+            self.segment[lane] += 1;
+            self.enter(lane, library);
         }
     }
 
