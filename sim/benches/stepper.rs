@@ -1,4 +1,9 @@
 //! Steps of the batch stepper a second, and one box-against-box test beside parry2d's.
+//!
+//! What runs on one thread is measured in CPU time, which other programs on the machine do not
+//! stretch; the scaling with threads needs the wall clock and a quiet machine.
+
+mod processor;
 
 #[path = "../tests/scenes/mod.rs"]
 mod scenes;
@@ -6,7 +11,9 @@ mod scenes;
 use cede_controller::{Footprint, Point, Pose};
 use cede_sim::OrientedBox;
 use cede_sim::batch::{Batch, Block, LANES, Library};
-use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use criterion::measurement::Measurement;
+use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
+use processor::CpuTime;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use rapier2d::parry::query::details::intersection_test_cuboid_cuboid;
@@ -24,34 +31,39 @@ fn drive<const N: usize>(library: &Library, block: &mut Block<N>) {
     block.restart(library);
 }
 
-fn steps<const N: usize>(criterion: &mut Criterion, encounters: usize, threads: usize) {
+fn steps<const N: usize>(
+    group: &mut BenchmarkGroup<'_, impl Measurement<Value: Send> + Sync>,
+    encounters: usize,
+    threads: usize,
+) {
     let recorded = scenes::encounters(400, u32::try_from(N).unwrap(), 1);
     let library = Library::new(&recorded, Footprint::PAPER).unwrap();
     let mut batch = Batch::<N>::new(&library, encounters, 2);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .unwrap();
-    let mut group = criterion.benchmark_group("batch");
+    let builder = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    let pool = builder.build().unwrap();
     group.throughput(Throughput::Elements(encounters as u64));
-    let name = BenchmarkId::from_parameter(format!(
-        "{N} vehicles, {encounters} encounters, {threads} threads"
-    ));
+    let name = format!("{N} vehicles, {encounters} encounters, {threads} threads");
     group.bench_function(name, |bencher| {
         pool.install(|| bencher.iter(|| batch.for_each(drive)));
     });
+}
+
+fn batch(criterion: &mut Criterion<CpuTime>) {
+    let mut group = criterion.benchmark_group("batch");
+    for encounters in [64, 512, 4096, 32_768] {
+        steps::<2>(&mut group, encounters, 1);
+    }
+    steps::<4>(&mut group, 4096, 1);
+    steps::<8>(&mut group, 4096, 1);
     group.finish();
 }
 
-fn batch(criterion: &mut Criterion) {
+fn threads(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("batch, wall clock");
     for threads in [1, 2] {
-        steps::<2>(criterion, 4096, threads);
+        steps::<2>(&mut group, 32_768, threads);
     }
-    for encounters in [64, 512, 32_768] {
-        steps::<2>(criterion, encounters, 1);
-    }
-    steps::<4>(criterion, 4096, 1);
-    steps::<8>(criterion, 4096, 1);
+    group.finish();
 }
 
 /// Pairs of vehicles in all attitudes, about half of them in contact.
@@ -67,7 +79,7 @@ fn pairs() -> Vec<[Pose; 2]> {
     (0..1024).map(|_| [pose(), pose()]).collect()
 }
 
-fn boxes(criterion: &mut Criterion) {
+fn boxes(criterion: &mut Criterion<CpuTime>) {
     let poses = pairs();
     let mut group = criterion.benchmark_group("box against box");
     group.throughput(Throughput::Elements(poses.len() as u64));
@@ -116,5 +128,10 @@ fn boxes(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, batch, boxes);
-criterion_main!(benches);
+criterion_group!(
+    name = single;
+    config = Criterion::default().with_measurement(CpuTime);
+    targets = batch, boxes
+);
+criterion_group!(wall, threads);
+criterion_main!(single, wall);

@@ -65,10 +65,10 @@ impl OrientedBox {
         let (l, w) = (self.half_length, self.half_width);
         let (other_l, other_w) = (other.half_length, other.half_width);
         [
-            between.dot(self.direction).abs() - (l + (other_l * cos + other_w * sin)),
-            between.cross(self.direction).abs() - (w + (other_l * sin + other_w * cos)),
-            between.dot(other.direction).abs() - (other_l + (l * cos + w * sin)),
-            between.cross(other.direction).abs() - (other_w + (l * sin + w * cos)),
+            between.dot(self.direction).abs() - (other_l * cos + other_w * sin + l),
+            between.cross(self.direction).abs() - (other_l * sin + other_w * cos + w),
+            between.dot(other.direction).abs() - (l * cos + w * sin + other_l),
+            between.cross(other.direction).abs() - (l * sin + w * cos + other_w),
         ]
     }
 }

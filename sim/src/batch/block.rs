@@ -1,6 +1,6 @@
 //! Eight encounters in lockstep: the unit that a batch steps, and that vector instructions work on.
 
-use super::lanes::{svo, svo_deviation};
+use super::lanes::{separation, svo, svo_deviation};
 use super::library::{Library, Scenario};
 use super::motion::Motion;
 use super::{LANES, Lanes};
@@ -63,9 +63,11 @@ struct Presence {
 }
 
 impl Presence {
+    /// All bits set in the lanes where the vehicle is there.
     #[inline]
-    fn at(&self, step: f32, lane: usize) -> bool {
-        (self.from[lane] <= step) & (step < self.until[lane])
+    fn mask(&self, step: Lanes) -> f32x8 {
+        let step = f32x8::from(step);
+        step.simd_ge(f32x8::from(self.from)) & step.simd_lt(f32x8::from(self.until))
     }
 }
 
@@ -113,7 +115,8 @@ impl<const N: usize> Block<N> {
     /// Whether `vehicle` is there in encounter `lane`.
     #[must_use]
     pub fn present(&self, vehicle: usize, lane: usize) -> bool {
-        vehicle < 2 || self.presence[vehicle].at(self.step[lane], lane)
+        let Presence { from, until } = &self.presence[vehicle];
+        vehicle < 2 || (from[lane]..until[lane]).contains(&self.step[lane])
     }
 
     /// Metres that the vehicle of this role has still to go to its conflict point.
@@ -320,31 +323,31 @@ impl<const N: usize> Block<N> {
 
     #[inline]
     fn least_gap(&self, library: &Library) -> Lanes {
-        let mut least = [f32::INFINITY; LANES];
+        let mut least = f32x8::splat(f32::INFINITY);
         for ego in 0..2 {
             for other in ego + 1..N {
-                self.narrow(ego, other, library, &mut least);
+                least = self.narrow(ego, other, library, least);
             }
         }
-        least
+        least.to_array()
     }
 
+    /// The lesser of `least` and the separation of two vehicles, where both are there.
     #[inline]
-    fn narrow(&self, ego: usize, other: usize, library: &Library, least: &mut Lanes) {
-        let (a, b) = (&self.vehicles[ego], &self.vehicles[other]);
-        let mut near = false;
-        for lane in 0..LANES {
-            let (dx, dy) = (b.x[lane] - a.x[lane], b.y[lane] - a.y[lane]);
-            near |= dx * dx + dy * dy <= library.reach_squared;
+    fn narrow(&self, ego: usize, other: usize, library: &Library, least: f32x8) -> f32x8 {
+        let (a, b) = (self.vehicles[ego].boxes(), self.vehicles[other].boxes());
+        let [x, y] = [b.centre[0] - a.centre[0], b.centre[1] - a.centre[1]];
+        if (x * x + y * y)
+            .simd_gt(f32x8::splat(library.reach_squared))
+            .all()
+        {
+            return least;
         }
-        if !near {
-            return;
+        let gap = separation(a, b, library.footprint);
+        let mut counts = gap.simd_lt(least);
+        if other >= 2 {
+            counts &= self.presence[other].mask(self.step);
         }
-        for (lane, least) in least.iter_mut().enumerate() {
-            let outline = a.outline(lane, library.footprint);
-            let gap = outline.separation(&b.outline(lane, library.footprint));
-            let counts = (gap < *least) & self.present(other, lane);
-            *least = if counts { gap } else { *least };
-        }
+        counts.bitselect(gap, least)
     }
 }

@@ -7,6 +7,7 @@
 use crate::encounter::STEP;
 use crate::kinematics::MAX_ACCELERATION;
 use crate::reward::SVO_SCALE;
+use cede_controller::Footprint;
 use cede_controller::svo::MIN_DISTANCE;
 use core::f32::consts::FRAC_PI_2;
 use wide::f32x8;
@@ -39,6 +40,49 @@ pub(super) fn svo_deviation(svo: f32x8, recorded: f32x8) -> f32x8 {
     let deviation = (svo - recorded).abs() * (1.0 / SVO_SCALE);
     let one = f32x8::ONE;
     deviation.simd_lt(one).bitselect(deviation, one)
+}
+
+/// Rectangles of one size: centres (m) and unit vectors along the lengths.
+#[derive(Clone, Copy)]
+pub(super) struct Boxes {
+    pub(super) centre: [f32x8; 2],
+    pub(super) direction: [f32x8; 2],
+}
+
+/// Twin of [`crate::OrientedBox::separation`] for vehicles of one `footprint`.
+#[inline]
+pub(super) fn separation(a: Boxes, b: Boxes, footprint: Footprint) -> f32x8 {
+    let between = [b.centre[0] - a.centre[0], b.centre[1] - a.centre[1]];
+    let cos = dot(a.direction, b.direction).abs();
+    let sin = cross(a.direction, b.direction).abs();
+    let (l, w) = (0.5 * footprint.length, 0.5 * footprint.width);
+    let along = cos * l + sin * w + l;
+    let across = sin * l + cos * w + w;
+    larger(
+        larger(
+            dot(between, a.direction).abs() - along,
+            cross(between, a.direction).abs() - across,
+        ),
+        larger(
+            dot(between, b.direction).abs() - along,
+            cross(between, b.direction).abs() - across,
+        ),
+    )
+}
+
+#[inline]
+fn dot(a: [f32x8; 2], b: [f32x8; 2]) -> f32x8 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+#[inline]
+fn cross(a: [f32x8; 2], b: [f32x8; 2]) -> f32x8 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+#[inline]
+fn larger(a: f32x8, b: f32x8) -> f32x8 {
+    a.simd_gt(b).bitselect(a, b)
 }
 
 /// (atan t − t) / t³ on [0, 1] as a polynomial in t², lowest power first: a fit to the least
@@ -86,7 +130,9 @@ fn first_quadrant_angle(y: f32x8, x: f32x8) -> f32x8 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::OrientedBox;
     use crate::driver::State;
+    use cede_controller::{Point, Pose};
     use proptest::prelude::*;
 
     const TOLERANCE: f32 = 4e-7;
@@ -139,6 +185,25 @@ mod tests {
             let (next_s, next_v) = advance(s, v, a);
             prop_assert_eq!(next_s.to_array(), [scalar.s; 8]);
             prop_assert_eq!(next_v.to_array(), [scalar.v; 8]);
+        }
+
+        #[test]
+        fn a_separation_has_the_scalar_s_bits(
+            x in -8.0_f32..8.0, y in -8.0_f32..8.0,
+            heading in -3.2_f32..3.2, other_heading in -3.2_f32..3.2,
+        ) {
+            let pose = |x: f32, y: f32, heading: f32| Pose {
+                position: Point::new(x, y),
+                direction: Point::new(heading.cos(), heading.sin()),
+            };
+            let (a, b) = (pose(1.0, 2.0, heading), pose(1.0 + x, 2.0 + y, other_heading));
+            let outline = |pose| OrientedBox::new(pose, Footprint::PAPER);
+            let boxes = |pose: Pose| Boxes {
+                centre: [pose.position.x, pose.position.y].map(f32x8::splat),
+                direction: [pose.direction.x, pose.direction.y].map(f32x8::splat),
+            };
+            let twin = separation(boxes(a), boxes(b), Footprint::PAPER);
+            prop_assert_eq!(twin.to_array(), [outline(a).separation(&outline(b)); 8]);
         }
 
         #[test]

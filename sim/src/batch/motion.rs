@@ -1,11 +1,10 @@
 //! One vehicle of each encounter of a block: state, pose, and the segment of the route that it is on.
 
-use super::lanes::advance;
+use super::lanes::{Boxes, advance};
 use super::library::{Library, Track};
 use super::{LANES, Lanes};
 use crate::driver::State;
-use crate::overlap::OrientedBox;
-use cede_controller::{Footprint, Point, Pose};
+use cede_controller::{Point, Pose};
 use wide::f32x8;
 
 /// One vehicle of each of the encounters that a block steps together; entry `i` of each array
@@ -72,8 +71,11 @@ impl Motion {
     }
 
     #[inline]
-    pub(super) fn outline(&self, lane: usize, footprint: Footprint) -> OrientedBox {
-        OrientedBox::new(self.pose(lane), footprint)
+    pub(super) fn boxes(&self) -> Boxes {
+        Boxes {
+            centre: [self.x.into(), self.y.into()],
+            direction: [self.cos.into(), self.sin.into()],
+        }
     }
 
     /// Puts the vehicle of encounter `lane` at the start of `track`.
