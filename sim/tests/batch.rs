@@ -5,8 +5,9 @@ mod scenes;
 use cede_controller::Footprint;
 use cede_controller::svo::svo;
 use cede_sim::batch::{Batch, Block, LANES, Library, LibraryError, Outcome};
+use cede_sim::episode::{End, Episode};
 use cede_sim::reward::{COLLISION, EpisodeLength, svo_deviation};
-use cede_sim::{Encounter, OrientedBox, Role, State, advance, clamp_acceleration};
+use cede_sim::{Driver, Encounter, OrientedBox, Role, State, View, advance, clamp_acceleration};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::f32::consts::FRAC_PI_4;
@@ -149,6 +150,43 @@ fn a_block_does_what_the_plain_path_does() {
     // Every way to end has been seen many times.
     assert_eq!(seen.len(), 5, "{seen:?}");
     assert!(seen.values().all(|&count| count > 50), "{seen:?}");
+}
+
+/// Holds one acceleration, whatever happens.
+struct Constant(f32);
+
+impl Driver for Constant {
+    fn accelerate(&mut self, _: &View<'_>) -> f32 {
+        self.0
+    }
+}
+
+/// The same end, after as many steps, with the same vehicle first.
+#[test]
+fn an_episode_ends_as_it_does_in_the_evaluation() {
+    let encounters = scenes::encounters(200, 2, 12);
+    let library = library(&encounters);
+    let mut block = Block::<2>::new(&library, 0, 0);
+    let mut random = Pcg64::seed_from_u64(13);
+    let mut ends = std::collections::HashSet::new();
+    for (number, encounter) in encounters.iter().enumerate() {
+        let asked = [0, 1].map(|_| random.random_range(-1.0..2.0_f32));
+        let mut drivers = asked.map(|a| -> Box<dyn Driver> { Box::new(Constant(a)) });
+        let episode = Episode::run(encounter, &mut drivers, None);
+        block.place(0, &library, number);
+        while block.outcome(0) == Outcome::Running {
+            block.advance(&library, &asked.map(|a| [a; LANES]));
+        }
+        assert_eq!(block.length(0).steps, episode.steps());
+        let expected = match (episode.end, episode.first()) {
+            (End::Collision, _) => Outcome::Collided,
+            (End::Finished, Some(role)) => Outcome::Arrived(role),
+            _ => Outcome::TimedOut,
+        };
+        assert_eq!(block.outcome(0), expected, "{number}");
+        ends.insert(expected);
+    }
+    assert_eq!(ends.len(), 4, "every end was seen: {ends:?}");
 }
 
 /// Whoever repeats the record ends where the record does, at no cost beyond rounding.

@@ -310,9 +310,11 @@ impl<const N: usize> Block<N> {
         if self.gap[lane] <= 0.0 {
             Outcome::Collided
         } else if past[0] >= 0.0 || past[1] >= 0.0 {
-            // Both in one step: whoever has been past the point for longer.
-            let [v, other_v] = [self.vehicles[0].v[lane], self.vehicles[1].v[lane]];
-            let left = past[1] < 0.0 || (past[0] >= 0.0 && past[0] * other_v >= past[1] * v);
+            // Both in one step: whoever reached it after the lesser share of its way, as in `Episode`.
+            let [moved, other_moved] =
+                [&self.vehicles[0], &self.vehicles[1]].map(|m| m.moved[lane]);
+            let earlier = past[0] * other_moved >= past[1] * moved;
+            let left = past[1] < 0.0 || (past[0] >= 0.0 && earlier);
             Outcome::Arrived(if left { Role::Left } else { Role::Other })
         } else if self.step[lane] >= 2.0 * self.recorded[lane] {
             Outcome::TimedOut

@@ -23,6 +23,8 @@ pub struct Motion {
     pub cos: Lanes,
     /// Sine of the heading.
     pub sin: Lanes,
+    /// Metres driven in the last step.
+    pub(super) moved: Lanes,
     /// The segment that the vehicle is on starts here: position (m) and arc length (m).
     from_x: Lanes,
     from_y: Lanes,
@@ -43,6 +45,7 @@ impl Motion {
             y: zero,
             cos: [1.0; LANES],
             sin: zero,
+            moved: zero,
             from_x: zero,
             from_y: zero,
             from_s: zero,
@@ -91,6 +94,7 @@ impl Motion {
     #[inline]
     pub(super) fn advance(&mut self, library: &Library, accelerations: &Lanes) {
         let (s, v) = advance(self.s.into(), self.v.into(), (*accelerations).into());
+        self.moved = (s - f32x8::from(self.s)).to_array();
         self.s = s.to_array();
         self.v = v.to_array();
         self.follow(library);
