@@ -1,0 +1,106 @@
+//! A complete verifier for feed-forward ReLU networks.
+//!
+//! [`onnx`] and [`vnnlib`] read a [`Network`] and a [`Property`]; [`verify`] answers whether any
+//! input of the property's boxes gives an output in its unsafe set. Answers are about the
+//! network's *real-number semantics*: the weights' exact values, no rounding anywhere.
+
+mod attack;
+mod forward;
+mod kernel;
+mod model;
+mod objective;
+pub mod onnx;
+mod propagation;
+mod property;
+mod relaxation;
+mod rounding;
+mod search;
+pub mod vnnlib;
+
+pub use model::{Activation, Evaluation, Layer, Matrix, ModelError, Network};
+pub use property::{Conjunction, Halfspace, InputBox, Property, Query};
+
+use std::time::{Duration, Instant};
+
+/// How to search.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings {
+    /// Give up after this long.
+    pub timeout: Duration,
+    /// Seed of every random choice: the same seed gives the same answer on any number of threads,
+    /// as long as the time suffices.
+    pub seed: u64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { timeout: Duration::from_secs(60), seed: 0 }
+    }
+}
+
+/// The answer to a property.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Answer {
+    /// Proved: no input of the boxes gives an unsafe output.
+    Unsat,
+    /// Refuted by this input.
+    Sat(Vec<f64>),
+    /// Not settled in time.
+    Timeout,
+    /// Not settled by this method (a box shrank to a point).
+    Unknown,
+}
+
+/// An answer and what it took.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// The answer.
+    pub answer: Answer,
+    /// Boxes that were bounded.
+    pub boxes: u64,
+}
+
+/// The property is about a network of another shape.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "the property has {} inputs and {} outputs, the network {} and {}",
+    property.0, property.1, network.0, network.1
+)]
+pub struct ShapeError {
+    /// Inputs and outputs of the property.
+    pub property: (usize, usize),
+    /// Inputs and outputs of the network.
+    pub network: (usize, usize),
+}
+
+/// Verifies a property on the threads of the current rayon pool.
+///
+/// # Errors
+/// If the property does not fit the network.
+pub fn verify(network: &Network, property: &Property, settings: Settings) -> Result<Report, ShapeError> {
+    let shapes = ShapeError {
+        property: (property.inputs, property.outputs),
+        network: (network.inputs(), network.outputs()),
+    };
+    if shapes.property != shapes.network {
+        return Err(shapes);
+    }
+    let deadline = Instant::now() + settings.timeout;
+    let mut boxes = 0;
+    if let Some(witness) = attack::attack(network, property, settings.seed) {
+        return Ok(Report { answer: Answer::Sat(witness), boxes });
+    }
+    let mut answer = Answer::Unsat;
+    for query in &property.queries {
+        answer = match search::search(network, property, query, deadline, &mut boxes) {
+            search::Found::Nothing => continue,
+            search::Found::Witness(witness) => Answer::Sat(witness),
+            search::Found::TimeOut => Answer::Timeout,
+            search::Found::Stuck => Answer::Unknown,
+        };
+        if answer != Answer::Unknown {
+            break;
+        }
+    }
+    Ok(Report { answer, boxes })
+}

@@ -1,0 +1,59 @@
+use super::*;
+use proptest::prelude::*;
+
+const SMALL: &str = "
+    ; a comment
+    (declare-const X_0 Real) (declare-const X_1 Real)
+    (declare-const Y_0 Real) (declare-const Y_1 Real)
+    (assert (>= X_0 -1)) (assert (<= X_0 2.5e-1))
+    (assert (and (<= 0 X_1) (<= X_1 3)))
+    (assert (or (and (<= Y_0 Y_1) (>= Y_0 2)) (and (>= (+ Y_0 (* 2 Y_1)) 7))))
+";
+
+fn half(coefficients: [f64; 2], bound: f64) -> Halfspace {
+    Halfspace { coefficients: coefficients.to_vec(), bound }
+}
+
+#[test]
+fn conjunctions_and_disjunctions_share_their_box() {
+    let property = read(SMALL).expect("well formed");
+    assert_eq!((property.inputs, property.outputs, property.queries.len()), (2, 2, 1));
+    let query = &property.queries[0];
+    assert_eq!(query.region, InputBox { lower: vec![-1.0, 0.0], upper: vec![0.25, 3.0] });
+    let first = vec![half([1.0, -1.0], 0.0), half([-1.0, 0.0], -2.0)];
+    assert_eq!(query.unsafe_set, vec![first, vec![half([-1.0, -2.0], -7.0)]]);
+}
+
+#[test]
+fn several_boxes_are_several_queries() {
+    let text = "(declare-const X_0 Real)(declare-const Y_0 Real)
+        (assert (or (and (>= X_0 0)(<= X_0 1)(<= Y_0 0)) (and (>= X_0 2)(<= X_0 3)(<= Y_0 1)) (and (>= X_0 3)(<= X_0 2))))";
+    let property = read(text).expect("well formed");
+    assert_eq!(property.queries.len(), 2, "an empty box is no query");
+}
+
+#[test]
+fn errors_say_where_and_what() {
+    let at = |text: &str| read(text).expect_err("malformed");
+    assert_eq!(at("(assert (<= X_0 1)").what, "a '(' that is never closed");
+    let error = at("(declare-const X_0 Real)\n(assert (<= X_0 zebra))");
+    assert_eq!((error.line, error.column), (2, 17));
+    assert!(at("(declare-const X_0 Real)(assert (<= X_0 1))").what.contains("X_0 is not bounded"));
+    assert!(at("(declare-const X_0 Real)(assert (<= (* X_0 X_0) 1))").what.contains("not linear"));
+    assert!(at(&"(".repeat(1000)).what.contains("nested"));
+}
+
+proptest! {
+    #[test]
+    fn any_text_is_read_or_refused(text in "[()<=>*+XY_0-9.a-z; \n-]{0,300}") {
+        let _ = read(&text);
+    }
+
+    #[test]
+    fn a_damaged_property_is_read_or_refused(at in 0..SMALL.len(), byte in 32_u8..127, cut in 0..SMALL.len()) {
+        let mut bytes = SMALL.as_bytes().to_vec();
+        bytes[at] = byte;
+        bytes.truncate(cut.max(1));
+        let _ = read(&String::from_utf8_lossy(&bytes));
+    }
+}
