@@ -5,16 +5,20 @@
 //! network's *real-number semantics*: the weights' exact values, no rounding anywhere.
 
 mod attack;
+pub mod check;
 mod forward;
 mod kernel;
 mod model;
 mod objective;
 pub mod onnx;
+pub mod proof;
 mod propagation;
 mod property;
 mod relaxation;
 mod rounding;
 mod search;
+#[cfg(test)]
+mod tests;
 pub mod vnnlib;
 
 pub use model::{Activation, Evaluation, Layer, Matrix, ModelError, Network};
@@ -30,11 +34,27 @@ pub struct Settings {
     /// Seed of every random choice: the same seed gives the same answer on any number of threads,
     /// as long as the time suffices.
     pub seed: u64,
+    /// What regions are cut across.
+    pub branching: Branching,
+    /// Whether to record a proof of [`Answer::Unsat`] for [`check`].
+    pub record: bool,
+}
+
+/// What the search cuts regions across.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Branching {
+    /// Inputs where they are few (at most 12), phases of ReLUs otherwise.
+    #[default]
+    Auto,
+    /// Inputs.
+    Inputs,
+    /// Phases of unstable ReLUs; inputs where none is left.
+    Phases,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { timeout: Duration::from_secs(60), seed: 0 }
+        Self { timeout: Duration::from_secs(60), seed: 0, branching: Branching::Auto, record: false }
     }
 }
 
@@ -56,8 +76,10 @@ pub enum Answer {
 pub struct Report {
     /// The answer.
     pub answer: Answer,
-    /// Boxes that were bounded.
-    pub boxes: u64,
+    /// Regions that were bounded.
+    pub regions: u64,
+    /// The proof of each query, if [`Answer::Unsat`] was to be recorded.
+    pub proofs: Vec<proof::Proof>,
 }
 
 /// The property is about a network of another shape.
@@ -86,21 +108,30 @@ pub fn verify(network: &Network, property: &Property, settings: Settings) -> Res
         return Err(shapes);
     }
     let deadline = Instant::now() + settings.timeout;
-    let mut boxes = 0;
+    let mut report = Report { answer: Answer::Unsat, regions: 0, proofs: Vec::new() };
     if let Some(witness) = attack::attack(network, property, settings.seed) {
-        return Ok(Report { answer: Answer::Sat(witness), boxes });
+        report.answer = Answer::Sat(witness);
+        return Ok(report);
     }
-    let mut answer = Answer::Unsat;
     for query in &property.queries {
-        answer = match search::search(network, property, query, deadline, &mut boxes) {
-            search::Found::Nothing => continue,
-            search::Found::Witness(witness) => Answer::Sat(witness),
-            search::Found::TimeOut => Answer::Timeout,
-            search::Found::Stuck => Answer::Unknown,
-        };
-        if answer != Answer::Unknown {
-            break;
+        let outcome = search::Problem::new(network, property, query, settings, deadline).search();
+        report.regions += outcome.regions;
+        match outcome.found {
+            search::Found::Nothing => report.proofs.push(outcome.proof),
+            search::Found::Witness(witness) => {
+                report.answer = Answer::Sat(witness);
+                break;
+            }
+            search::Found::TimeOut => {
+                report.answer = Answer::Timeout;
+                break;
+            }
+            // A later query may still have a witness.
+            search::Found::Stuck => report.answer = Answer::Unknown,
         }
     }
-    Ok(Report { answer, boxes })
+    if report.answer != Answer::Unsat || !settings.record {
+        report.proofs.clear();
+    }
+    Ok(report)
 }

@@ -2,15 +2,19 @@
 //!
 //! For weights w ≥ 0 on the atoms (each an excess a·y − b that is ≤ 0 on the unsafe set), a
 //! positive lower bound of Σ wᵢ·excessᵢ shows that the box misses the set. Every choice of
-//! weights and of lower slopes in [0, 1] gives a sound bound; the best choice is found by
-//! projected supergradient ascent, which is the dual of the linear programme over the neurons'
-//! triangles (Wong and Kolter 2018; Xu et al. 2021, α-CROWN).
+//! weights and of lower slopes in [0, 1] gives a sound bound, and so does every choice of
+//! multipliers ≥ 0 on the assumed phases (±z ≤ 0 there). The best choice is found by projected
+//! supergradient ascent, which is the dual of the linear programme over the neurons' triangles
+//! (Wong and Kolter 2018; α-CROWN, Xu et al. 2021; β-CROWN, Wang et al. 2021).
+
+mod programme;
 
 use super::kernel::{add_scaled, dot};
+use super::proof::Refutation;
 use super::propagation::Workspace;
 use super::property::InputBox;
 use super::relaxation::Symbols;
-use super::rounding::{SPARE, UNDERFLOW};
+use super::rounding::UNDERFLOW;
 use std::ops::Range;
 
 /// Memory of the ascent, kept between boxes.
@@ -18,10 +22,11 @@ use std::ops::Range;
 pub(super) struct Ascent {
     forms: Vec<Vec<f64>>,
     sizes: Vec<(f64, f64)>,
-    /// The weights of the atoms.
-    pub(super) weights: Vec<f64>,
+    /// The weights of the atoms, then the multipliers of the assumed phases.
+    weights: Vec<f64>,
+    atoms: usize,
     /// The lower slope of every symbol.
-    pub(super) slopes: Vec<f64>,
+    slopes: Vec<f64>,
     form: Vec<f64>,
     /// The coefficient at which each symbol was replaced.
     coefficients: Vec<f64>,
@@ -30,59 +35,97 @@ pub(super) struct Ascent {
     steps: Vec<f64>,
 }
 
-/// Most steps of the ascent.
+/// Most steps of the ascent; more where phases are assumed, whose multipliers have no upper limit.
 const STEPS: usize = 12;
+const STEPS_WITH_PHASES: usize = 80;
+
+/// Rounding errors are charged so many times over, so that a checker that bounds its own rounding
+/// more coarsely still finds what is claimed.
+const MARGIN: f64 = 64.0;
 
 impl Ascent {
-    /// Whether the box misses the conjunction of the atoms at these positions of the workspace;
-    /// also gives the best bound found.
+    /// The best bound found for the conjunction of the atoms at these positions of the workspace:
+    /// if it is positive, the region misses the conjunction, and the weights and slopes are those
+    /// that show it. Otherwise they are the last ones tried.
     #[inline(always)]
-    pub(super) fn refutes(&mut self, workspace: &Workspace, region: &InputBox, atoms: Range<usize>) -> (bool, f64) {
+    pub(super) fn bound(&mut self, workspace: &Workspace, region: &InputBox, atoms: Range<usize>) -> f64 {
+        if atoms.is_empty() {
+            // Nothing has to hold for an empty conjunction: it is the whole space.
+            return f64::NEG_INFINITY;
+        }
         let symbols = &workspace.symbols;
-        let count = atoms.len();
+        self.load(workspace, atoms);
+        let mut best = (f64::NEG_INFINITY, 0);
+        // Each form alone; an assumption that cannot hold anywhere refutes as well as an atom.
+        for form in (0..self.weights.len()).rev() {
+            self.weights.fill(0.0);
+            self.weights[form] = 1.0;
+            let bound = self.evaluate(symbols, region);
+            if bound > 0.0 {
+                return bound;
+            }
+            if form < self.atoms && bound > best.0 {
+                best = (bound, form);
+            }
+        }
+        self.weights.fill(0.0);
+        self.weights[best.1] = 1.0;
+        if self.atoms > 1 {
+            self.evaluate(symbols, region);
+        }
+        let first = best.0;
+        let (mut bound, mut last) = (first, first);
+        let phases = !workspace.assumed.is_empty();
+        for step in 0..if phases { STEPS_WITH_PHASES } else { STEPS } {
+            self.climb(symbols, 1.0 / (1.0 + step as f64), last);
+            last = self.evaluate(symbols, region);
+            bound = bound.max(last);
+            if bound > 0.0 {
+                return bound;
+            }
+            // Not worth more steps if the gain so far, kept up, would not reach zero.
+            if !phases && bound - first < 0.08 * (step + 1) as f64 * -first {
+                break;
+            }
+        }
+        bound
+    }
+
+    /// As [`Self::bound`] after it failed on a region on which every ReLU is stable: there the
+    /// forms are linear in the inputs, and a linear programme finds the best weights and
+    /// multipliers; the bound itself is then evaluated soundly. Failing that, gives an input
+    /// that may be a counterexample.
+    pub(super) fn finish(&mut self, workspace: &Workspace, region: &InputBox) -> Result<f64, Option<Vec<f64>>> {
+        let symbols = &workspace.symbols;
+        let forms = &self.forms[..self.weights.len()];
+        if let Some(weights) = programme::best_weights(forms, self.atoms, region) {
+            self.weights = weights;
+            let bound = self.evaluate(symbols, region);
+            if bound > 0.0 {
+                return Ok(bound);
+            }
+        }
+        Err(programme::least_excess(&self.forms[..self.weights.len()], self.atoms, region))
+    }
+
+    /// Takes over the forms of a conjunction's atoms and of the assumed phases.
+    fn load(&mut self, workspace: &Workspace, atoms: Range<usize>) {
+        self.atoms = atoms.len();
+        let count = self.atoms + workspace.assumed.len();
         self.forms.resize_with(count.max(self.forms.len()), Vec::new);
         self.sizes.clear();
         for (form, atom) in self.forms.iter_mut().zip(atoms) {
             self.sizes.push(workspace.atom(atom, form));
         }
+        for (form, (_, assumed, size)) in self.forms[self.atoms..].iter_mut().zip(&workspace.assumed) {
+            form.clone_from(assumed);
+            self.sizes.push(*size);
+        }
+        let symbols = &workspace.symbols;
         self.slopes.clear();
         self.slopes.extend((0..symbols.count()).map(|s| symbols.lines(s).lower_slope));
         self.weights.clear();
         self.weights.resize(count, 0.0);
-
-        let mut best = (f64::NEG_INFINITY, 0);
-        for atom in 0..count {
-            self.weights.fill(0.0);
-            self.weights[atom] = 1.0;
-            let bound = self.evaluate(symbols, region);
-            if bound > 0.0 {
-                return (true, bound);
-            }
-            if bound > best.0 {
-                best = (bound, atom);
-            }
-        }
-        self.weights.fill(0.0);
-        if let Some(weight) = self.weights.get_mut(best.1) {
-            *weight = 1.0;
-        }
-        if count > 1 {
-            self.evaluate(symbols, region);
-        }
-        let mut bound = best.0;
-        let first = bound;
-        for step in 0..STEPS {
-            self.climb(symbols, 1.0 / (1.0 + step as f64));
-            bound = bound.max(self.evaluate(symbols, region));
-            if bound > 0.0 {
-                return (true, bound);
-            }
-            // Not worth more steps if the gain so far, kept up, would not reach zero.
-            if bound - first < 0.08 * (step + 1) as f64 * -first {
-                break;
-            }
-        }
-        (false, bound)
     }
 
     /// The bound for the present weights and slopes.
@@ -125,12 +168,12 @@ impl Ascent {
             least += c * x;
             self.point.push(x);
         }
-        least - errors * SPARE
+        least - errors * MARGIN
     }
 
     /// One step up the supergradient at the present weights and slopes.
     #[inline(always)]
-    fn climb(&mut self, symbols: &Symbols, length: f64) {
+    fn climb(&mut self, symbols: &Symbols, length: f64, bound: f64) {
         self.steps.clear();
         let mut steepest = 0.0_f64;
         for symbol in 0..symbols.count() {
@@ -152,19 +195,27 @@ impl Ascent {
                 *slope = (*slope + length * step / steepest).clamp(0.0, 1.0);
             }
         }
-        let count = self.weights.len();
-        if count > 1 {
-            let excess = |form: &Vec<f64>| dot(form, &self.point[..form.len()]);
-            self.steps.clear();
-            self.steps.extend(self.forms[..count].iter().map(excess));
-            let mean = self.steps.iter().sum::<f64>() / count as f64;
-            let widest = self.steps.iter().fold(0.0_f64, |w, s| w.max((s - mean).abs()));
+        let value = |form: &Vec<f64>| dot(form, &self.point[..form.len()]);
+        self.steps.clear();
+        self.steps.extend(self.forms[..self.weights.len()].iter().map(value));
+        let (atoms, assumed) = self.weights.split_at_mut(self.atoms);
+        let (excesses, breaches) = self.steps.split_at(self.atoms);
+        if atoms.len() > 1 {
+            let mean = excesses.iter().sum::<f64>() / atoms.len() as f64;
+            let widest = excesses.iter().fold(0.0_f64, |w, s| w.max((s - mean).abs()));
             if widest > 0.0 {
-                for (weight, step) in self.weights.iter_mut().zip(&self.steps) {
-                    *weight = (*weight + 0.5 * length * (step - mean) / widest).max(0.0);
+                for (weight, excess) in atoms.iter_mut().zip(excesses) {
+                    *weight = (*weight + 0.5 * length * (excess - mean) / widest).max(0.0);
                 }
-                let total: f64 = self.weights.iter().sum();
-                self.weights.iter_mut().for_each(|w| *w /= total);
+                let total: f64 = atoms.iter().sum();
+                atoms.iter_mut().for_each(|w| *w /= total);
+            }
+        }
+        // Polyak's step, to half beyond the bound 0 so that it is passed.
+        let norm: f64 = breaches.iter().map(|b| b * b).sum();
+        if norm > 0.0 {
+            for (multiplier, breach) in assumed.iter_mut().zip(breaches) {
+                *multiplier = (*multiplier - 1.5 * bound * breach / norm).max(0.0);
             }
         }
     }
@@ -174,19 +225,36 @@ impl Ascent {
         &self.point[1..=inputs]
     }
 
-    /// Adds to `scores` how much of the relaxation's slack each input is answerable for.
-    pub(super) fn blame(&self, workspace: &Workspace, scores: &mut [f64]) {
+    /// Adds to `slacks` what each symbol's relaxation may have cost the last evaluation, and to
+    /// `scores` how much of that each input is answerable for.
+    pub(super) fn blame(&self, workspace: &Workspace, slacks: &mut [f64], scores: &mut [f64]) {
         let symbols = &workspace.symbols;
-        for (symbol, shares) in workspace.shares.chunks_exact(scores.len()).enumerate() {
+        for (symbol, (sum, shares)) in slacks.iter_mut().zip(workspace.shares.chunks_exact(scores.len())).enumerate() {
             let slack = self.slack(symbols, symbol);
+            *sum += slack;
             for (score, share) in scores.iter_mut().zip(shares) {
                 *score += slack * share;
             }
         }
     }
 
+    /// The record of the last evaluation.
+    pub(super) fn refutation(&self, workspace: &Workspace, conjunction: u32, bound: f64) -> Refutation {
+        let symbols = &workspace.symbols;
+        let unusual = |&s: &usize| self.slopes[s] != symbols.lines(s).lower_slope;
+        let (weights, multipliers) = self.weights.split_at(self.atoms);
+        let assumed = workspace.assumed.iter().zip(multipliers);
+        Refutation {
+            conjunction,
+            weights: weights.to_vec(),
+            multipliers: assumed.map(|((phase, ..), &m)| (phase.0, m)).filter(|&(_, m)| m > 0.0).collect(),
+            slopes: (0..symbols.count()).filter(unusual).map(|s| (symbols.neuron(s) as u32, self.slopes[s])).collect(),
+            bound,
+        }
+    }
+
     /// The most that replacing the symbol by a line can have cost the last evaluation.
-    pub(super) fn slack(&self, symbols: &Symbols, symbol: usize) -> f64 {
+    fn slack(&self, symbols: &Symbols, symbol: usize) -> f64 {
         let (c, lines, (l, u)) = (self.coefficients[symbol], symbols.lines(symbol), symbols.interval(symbol));
         if !lines.free {
             return c.abs() * (lines.upper_offset - lines.lower_offset);

@@ -15,10 +15,11 @@ pub(super) struct Prepared {
     layers: Vec<PreparedLayer>,
     /// Neurons with an activation, over all layers.
     pub(super) neurons: usize,
+    /// How an unstable ReLU is enclosed: [`Lines::relu`]; tests plant unsound lines here.
+    pub(super) enclose: fn(f64, f64) -> Lines,
 }
 
 struct PreparedLayer {
-    inputs: usize,
     outputs: usize,
     /// One row for each *input* of the layer.
     columns: Vec<f64>,
@@ -39,7 +40,6 @@ impl Prepared {
             let (inputs, outputs) = (layer.inputs(), layer.outputs());
             let columns = (0..inputs).flat_map(|j| (0..outputs).map(move |i| layer.weights.row(i)[j])).collect();
             layers.push(PreparedLayer {
-                inputs,
                 outputs,
                 columns,
                 bias: layer.bias.clone(),
@@ -52,7 +52,6 @@ impl Prepared {
         }
         let outputs = network.outputs();
         layers.push(PreparedLayer {
-            inputs: outputs,
             outputs: atoms.len(),
             columns: (0..outputs).flat_map(|j| atoms.iter().map(move |a| a.coefficients[j])).collect(),
             bias: atoms.iter().map(|a| -a.bound).collect(),
@@ -61,9 +60,12 @@ impl Prepared {
             uncertainty: 0.0,
             first: neurons,
         });
-        Self { inputs: network.inputs(), layers, neurons }
+        Self { inputs: network.inputs(), layers, neurons, enclose: Lines::relu }
     }
 }
+
+/// An assumed phase of a ReLU: which neuron, and whether its pre-activation is ≥ 0 (else ≤ 0).
+pub(super) type Phase = (u32, bool);
 
 /// The region is empty: two bounds of one neuron contradict each other.
 pub(super) struct Empty;
@@ -86,6 +88,8 @@ pub(super) struct Workspace {
     pub(super) symbols: Symbols,
     /// For each symbol, how much of its interval's width each input brings about; sums to 1.
     pub(super) shares: Vec<f64>,
+    /// For each assumed phase, the form of ±z that the assumption makes ≤ 0, with error and size.
+    pub(super) assumed: Vec<(Phase, Vec<f64>, (f64, f64))>,
     forms: Forms,
     previous: Forms,
     /// What the layer before gives: (neuron, column) of its symbols, lanes of its active forms.
@@ -94,11 +98,13 @@ pub(super) struct Workspace {
     compact_rows: Vec<f64>,
     compact_weights: Vec<f64>,
     block: Vec<Lane>,
+    open: Vec<usize>,
 }
 
 impl Workspace {
     /// Tightens `bounds` (of all neurons with an activation, sound for a box that contains this
-    /// one) to the box, and leaves the forms of the wanted atoms for [`Self::atom`].
+    /// one) to the box where the assumed phases hold, and leaves the forms of the wanted atoms for
+    /// [`Self::atom`].
     ///
     /// # Errors
     /// If the bounds show that nothing in the box satisfies what `bounds` assumed.
@@ -108,8 +114,10 @@ impl Workspace {
         network: &Prepared,
         region: &InputBox,
         bounds: &mut [Interval],
+        phases: &[Phase],
         atoms: &[usize],
     ) -> Result<(), Empty> {
+        self.assumed.clear();
         self.symbols.restart(&region.lower, &region.upper);
         self.shares.clear();
         self.direct.clear();
@@ -132,11 +140,12 @@ impl Workspace {
                 continue;
             }
             let own = &mut bounds[layer.first..layer.first + layer.outputs];
-            let alive = |i: &usize| layer.activation != Activation::Relu || own[*i].1 > 0.0;
+            let is_assumed = |i: usize| phases.iter().any(|p| p.0 as usize == layer.first + i);
+            let alive = |i: &usize| layer.activation != Activation::Relu || own[*i].1 > 0.0 || is_assumed(*i);
             self.forms.neurons.extend((0..layer.outputs).filter(alive));
             self.compose_layer(layer);
             self.tighten(layer, region, own)?;
-            self.release(layer, own);
+            self.release(layer, own, phases, network.enclose);
         }
         Ok(())
     }
@@ -208,7 +217,9 @@ impl Workspace {
     fn tighten(&mut self, layer: &PreparedLayer, region: &InputBox, bounds: &mut [Interval]) -> Result<(), Empty> {
         let inputs = region.lower.len();
         let open = |i: usize| layer.activation != Activation::Relu || (bounds[i].0 < 0.0 && bounds[i].1 > 0.0);
-        let lanes: Vec<usize> = (0..self.forms.neurons.len()).filter(|&l| open(self.forms.neurons[l])).collect();
+        let mut lanes = std::mem::take(&mut self.open);
+        lanes.clear();
+        lanes.extend((0..self.forms.neurons.len()).filter(|&l| open(self.forms.neurons[l])));
         let first_share = self.shares.len();
         // A lane for each lower bound, and one for the lower bound of the negated form.
         for chunk in lanes.chunks(LANES / 2) {
@@ -237,6 +248,7 @@ impl Workspace {
             }
         }
         self.shares.truncate(kept);
+        self.open = lanes;
         Ok(())
     }
 
@@ -266,32 +278,31 @@ impl Workspace {
 
     /// Sorts the layer's neurons into active forms and new symbols.
     #[inline(always)]
-    fn release(&mut self, layer: &PreparedLayer, bounds: &[Interval]) {
+    fn release(&mut self, layer: &PreparedLayer, bounds: &[Interval], phases: &[Phase], enclose: fn(f64, f64) -> Lines) {
         self.direct.clear();
         self.active.clear();
         let stride = padded(self.forms.neurons.len());
         for (lane, &i) in self.forms.neurons.iter().enumerate() {
             let (l, u) = bounds[i];
+            let row = self.forms.coefficients.chunks_exact(stride).map(|row| row[lane]);
+            let sizes = (self.forms.errors[lane], self.forms.sizes[lane]);
+            if let Some(&phase) = phases.iter().find(|p| p.0 as usize == layer.first + i) {
+                let sign = if phase.1 { -1.0 } else { 1.0 };
+                self.assumed.push((phase, row.clone().map(|c| sign * c).collect(), sizes));
+            }
             let lines = match layer.activation {
                 Activation::Relu if u <= 0.0 => continue,
                 Activation::Relu if l >= 0.0 => {
                     self.active.push(lane);
                     continue;
                 }
-                Activation::Relu => Lines::relu(l, u),
+                Activation::Relu => enclose(l, u),
                 Activation::Tanh => Lines::tanh(l, u),
                 Activation::Identity => continue,
             };
-            let row = self.forms.coefficients.chunks_exact(stride).map(|row| row[lane]);
-            let sizes = (self.forms.errors[lane], self.forms.sizes[lane]);
             let column = self.symbols.push(layer.first + i, row, sizes, (l, u), lines);
             self.direct.push((i, column));
         }
-    }
-
-    /// Number of atoms that the last box was bounded with.
-    pub(super) fn atoms(&self) -> usize {
-        self.forms.neurons.len()
     }
 
     /// The form of the k-th wanted atom, and its error and size.
