@@ -5,6 +5,7 @@
 //! network's *real-number semantics*: the weights' exact values, no rounding anywhere.
 
 mod attack;
+mod certificate;
 pub mod check;
 mod forward;
 mod kernel;
@@ -21,6 +22,7 @@ mod search;
 mod tests;
 pub mod vnnlib;
 
+pub use certificate::{Certificate, CertificateError};
 pub use model::{Activation, Evaluation, Layer, Matrix, ModelError, Network};
 pub use property::{Conjunction, Halfspace, InputBox, Property, Query};
 
@@ -54,7 +56,12 @@ pub enum Branching {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { timeout: Duration::from_secs(60), seed: 0, branching: Branching::Auto, record: false }
+        Self {
+            timeout: Duration::from_secs(60),
+            seed: 0,
+            branching: Branching::Auto,
+            record: false,
+        }
     }
 }
 
@@ -99,7 +106,11 @@ pub struct ShapeError {
 ///
 /// # Errors
 /// If the property does not fit the network.
-pub fn verify(network: &Network, property: &Property, settings: Settings) -> Result<Report, ShapeError> {
+pub fn verify(
+    network: &Network,
+    property: &Property,
+    settings: Settings,
+) -> Result<Report, ShapeError> {
     let shapes = ShapeError {
         property: (property.inputs, property.outputs),
         network: (network.inputs(), network.outputs()),
@@ -108,7 +119,11 @@ pub fn verify(network: &Network, property: &Property, settings: Settings) -> Res
         return Err(shapes);
     }
     let deadline = Instant::now() + settings.timeout;
-    let mut report = Report { answer: Answer::Unsat, regions: 0, proofs: Vec::new() };
+    let mut report = Report {
+        answer: Answer::Unsat,
+        regions: 0,
+        proofs: Vec::new(),
+    };
     if let Some(witness) = attack::attack(network, property, settings.seed) {
         report.answer = Answer::Sat(witness);
         return Ok(report);

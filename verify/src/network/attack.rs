@@ -20,8 +20,10 @@ pub(super) fn attack(network: &Network, property: &Property, seed: u64) -> Optio
         for conjunction in &query.unsafe_set {
             for restart in 0..RESTARTS {
                 let start = start(&query.region, restart, &mut random);
-                let found = pulp::Arch::new().dispatch(|| descend(&mut runner, &query.region, conjunction, start));
-                if let Some(witness) = found.and_then(|point| confirmed(network, property, &point)) {
+                let found = pulp::Arch::new()
+                    .dispatch(|| descend(&mut runner, &query.region, conjunction, start));
+                if let Some(witness) = found.and_then(|point| confirmed(network, property, &point))
+                {
                     return Some(witness);
                 }
             }
@@ -40,12 +42,26 @@ pub(super) fn confirmed(network: &Network, property: &Property, point: &[f64]) -
 
 fn start(region: &InputBox, restart: usize, random: &mut Pcg64) -> Vec<f64> {
     let sides = region.lower.iter().zip(&region.upper);
-    sides.map(|(lo, hi)| if restart == 0 { 0.5 * (lo + hi) } else { lo + random.random::<f64>() * (hi - lo) }).collect()
+    sides
+        .map(|(lo, hi)| {
+            if restart == 0 {
+                0.5 * (lo + hi)
+            } else {
+                lo + random.random::<f64>() * (hi - lo)
+            }
+        })
+        .collect()
 }
 
 /// The atom that is violated the most, and by how much.
 pub(super) fn worst<'a>(conjunction: &'a Conjunction, y: &[f64]) -> (f64, Option<&'a Halfspace>) {
-    conjunction.iter().map(|atom| (atom.excess(y), Some(atom))).fold((f64::NEG_INFINITY, None), |a, b| if b.0 > a.0 { b } else { a })
+    conjunction
+        .iter()
+        .map(|atom| (atom.excess(y), Some(atom)))
+        .fold(
+            (f64::NEG_INFINITY, None),
+            |a, b| if b.0 > a.0 { b } else { a },
+        )
 }
 
 #[inline(always)]
@@ -63,7 +79,12 @@ fn descend(
         }
         let length = 0.3 * (1.0 - step as f64 / STEPS as f64);
         let gradient = runner.gradient(atom?);
-        for (((x, g), lo), hi) in point.iter_mut().zip(gradient).zip(&region.lower).zip(&region.upper) {
+        for (((x, g), lo), hi) in point
+            .iter_mut()
+            .zip(gradient)
+            .zip(&region.lower)
+            .zip(&region.upper)
+        {
             if *g != 0.0 {
                 *x = (*x - length * (hi - lo) * g.signum()).clamp(*lo, *hi);
             }

@@ -31,7 +31,9 @@ pub enum CheckError {
         conjunction: u32,
     },
     /// A recorded refutation does not hold.
-    #[error("region {cell}: conjunction {conjunction} is only bounded by {bound}, which is not positive")]
+    #[error(
+        "region {cell}: conjunction {conjunction} is only bounded by {bound}, which is not positive"
+    )]
     Unsound {
         /// Index of the region.
         cell: usize,
@@ -62,7 +64,10 @@ pub fn check(network: &Network, query: &Query, proof: &Proof) -> Result<usize, C
     while let Some(mut region) = pending.pop() {
         regions += 1;
         let cell = proof.cells.get(region.cell);
-        let cell = cell.ok_or(CheckError::Malformed { cell: region.cell, what: "is missing" })?;
+        let cell = cell.ok_or(CheckError::Malformed {
+            cell: region.cell,
+            what: "is missing",
+        })?;
         if region.settle(network, query, cell)? {
             continue;
         }
@@ -70,7 +75,10 @@ pub fn check(network: &Network, query: &Query, proof: &Proof) -> Result<usize, C
             Some((split, first)) => pending.extend(region.halves(split, first as usize)?),
             None => {
                 let conjunction = region.open[0];
-                return Err(CheckError::Unproved { cell: region.cell, conjunction });
+                return Err(CheckError::Unproved {
+                    cell: region.cell,
+                    conjunction,
+                });
             }
         }
     }
@@ -87,19 +95,38 @@ struct Region {
 
 impl Region {
     /// Confirms what the cell claims; true if nothing is left open.
-    fn settle(&mut self, network: &Network, query: &Query, cell: &Cell) -> Result<bool, CheckError> {
+    fn settle(
+        &mut self,
+        network: &Network,
+        query: &Query,
+        cell: &Cell,
+    ) -> Result<bool, CheckError> {
         let consistent = self.bounds.tighten(network);
         if cell.empty || !consistent {
             let what = "is said to be empty, but is not";
-            return if consistent { Err(CheckError::Malformed { cell: self.cell, what }) } else { Ok(true) };
+            return if consistent {
+                Err(CheckError::Malformed {
+                    cell: self.cell,
+                    what,
+                })
+            } else {
+                Ok(true)
+            };
         }
         for claim in &cell.refuted {
             let conjunction = query.unsafe_set.get(claim.conjunction as usize);
             let usable = conjunction.is_some_and(|c| c.len() == claim.weights.len())
-                && claim.weights.iter().chain(claim.multipliers.iter().map(|(_, m)| m)).all(|&w| w >= 0.0)
+                && claim
+                    .weights
+                    .iter()
+                    .chain(claim.multipliers.iter().map(|(_, m)| m))
+                    .all(|&w| w >= 0.0)
                 && claim.slopes.iter().all(|(_, s)| (0.0..=1.0).contains(s));
             let (Some(conjunction), true) = (conjunction, usable) else {
-                return Err(CheckError::Malformed { cell: self.cell, what: "has a refutation that does not fit" });
+                return Err(CheckError::Malformed {
+                    cell: self.cell,
+                    what: "has a refutation that does not fit",
+                });
             };
             self.confirm(network, conjunction, claim, HALVINGS)?;
             self.open.retain(|&c| c != claim.conjunction);
@@ -120,14 +147,23 @@ impl Region {
             return Ok(());
         }
         let InputBox { lower, upper } = &self.bounds.region;
-        let widest = (0..lower.len()).max_by(|&a, &b| (upper[a] - lower[a]).total_cmp(&(upper[b] - lower[b])));
+        let widest = (0..lower.len())
+            .max_by(|&a, &b| (upper[a] - lower[a]).total_cmp(&(upper[b] - lower[b])));
         let (Some(input), true) = (widest, halvings > 0) else {
-            return Err(CheckError::Unsound { cell: self.cell, conjunction: claim.conjunction, bound });
+            return Err(CheckError::Unsound {
+                cell: self.cell,
+                conjunction: claim.conjunction,
+                bound,
+            });
         };
         let at = 0.5 * (lower[input] + upper[input]);
         for above in [false, true] {
             let mut half = self.clone();
-            let side = if above { &mut half.bounds.region.lower } else { &mut half.bounds.region.upper };
+            let side = if above {
+                &mut half.bounds.region.lower
+            } else {
+                &mut half.bounds.region.upper
+            };
             side[input] = at;
             if half.bounds.tighten(network) {
                 half.confirm(network, conjunction, claim, halvings - 1)?;
@@ -143,17 +179,35 @@ impl Region {
             form.add(&atom.coefficients, -atom.bound, weight);
         }
         let multiplier = |neuron: usize| {
-            let sign = self.phases.iter().find(|p| p.0 == neuron).map(|p| if p.1 { -1.0 } else { 1.0 });
-            let size = claim.multipliers.iter().find(|m| m.0 as usize == neuron).map(|m| m.1);
+            let sign = self
+                .phases
+                .iter()
+                .find(|p| p.0 == neuron)
+                .map(|p| if p.1 { -1.0 } else { 1.0 });
+            let size = claim
+                .multipliers
+                .iter()
+                .find(|m| m.0 as usize == neuron)
+                .map(|m| m.1);
             sign.unwrap_or(0.0) * size.unwrap_or(0.0)
         };
-        let slope = |neuron: usize| claim.slopes.iter().find(|s| s.0 as usize == neuron).map(|s| s.1);
-        self.bounds.least(network, network.layers().len(), form, slope, multiplier)
+        let slope = |neuron: usize| {
+            claim
+                .slopes
+                .iter()
+                .find(|s| s.0 as usize == neuron)
+                .map(|s| s.1)
+        };
+        self.bounds
+            .least(network, network.layers().len(), form, slope, multiplier)
     }
 
     /// The two parts of the region that a split makes.
     fn halves(self, split: Split, first: usize) -> Result<[Self; 2], CheckError> {
-        let malformed = CheckError::Malformed { cell: self.cell, what: "has a split that does not fit" };
+        let malformed = CheckError::Malformed {
+            cell: self.cell,
+            what: "has a split that does not fit",
+        };
         // Children stand behind their parent, so the walk ends.
         if first <= self.cell {
             return Err(malformed);
@@ -163,8 +217,18 @@ impl Region {
         match split {
             Split::Input { input, at } => {
                 let index = input as usize;
-                let fits = one.bounds.region.lower.get(index).is_some_and(|&lo| lo <= at)
-                    && one.bounds.region.upper.get(index).is_some_and(|&hi| at <= hi);
+                let fits = one
+                    .bounds
+                    .region
+                    .lower
+                    .get(index)
+                    .is_some_and(|&lo| lo <= at)
+                    && one
+                        .bounds
+                        .region
+                        .upper
+                        .get(index)
+                        .is_some_and(|&hi| at <= hi);
                 if !fits {
                     return Err(malformed);
                 }
@@ -173,7 +237,12 @@ impl Region {
             }
             Split::Phase { neuron } => {
                 let neuron = neuron as usize;
-                if one.bounds.assume(neuron, true).and(two.bounds.assume(neuron, false)).is_none() {
+                if one
+                    .bounds
+                    .assume(neuron, true)
+                    .and(two.bounds.assume(neuron, false))
+                    .is_none()
+                {
                     return Err(malformed);
                 }
                 one.phases.push((neuron, true));
@@ -200,7 +269,12 @@ const TINY: f64 = 1e-290;
 
 impl Form {
     fn zero(length: usize) -> Self {
-        Self { coefficients: vec![0.0; length], doubts: vec![0.0; length], constant: 0.0, error: 0.0 }
+        Self {
+            coefficients: vec![0.0; length],
+            doubts: vec![0.0; length],
+            constant: 0.0,
+            error: 0.0,
+        }
     }
 
     /// Adds factor·(row, constant).
@@ -233,12 +307,21 @@ impl Bounds {
         });
         let first = first.collect();
         let unbounded = |layer: &Layer| vec![(f64::NEG_INFINITY, f64::INFINITY); layer.outputs()];
-        Self { region, layers: network.layers().iter().map(unbounded).collect(), first }
+        Self {
+            region,
+            layers: network.layers().iter().map(unbounded).collect(),
+            first,
+        }
     }
 
     /// Assumes a phase of a ReLU.
     fn assume(&mut self, neuron: usize, on: bool) -> Option<()> {
-        let (layer, first) = self.first.iter().enumerate().filter_map(|(i, f)| f.map(|f| (i, f))).rfind(|(_, f)| *f <= neuron)?;
+        let (layer, first) = self
+            .first
+            .iter()
+            .enumerate()
+            .filter_map(|(i, f)| f.map(|f| (i, f)))
+            .rfind(|(_, f)| *f <= neuron)?;
         let (l, u) = self.layers[layer].get_mut(neuron - first)?;
         if on {
             *l = l.max(0.0);
@@ -260,7 +343,8 @@ impl Bounds {
                     let mut form = Form::zero(layer.inputs());
                     form.add(layer.weights.row(i), layer.bias[i], sign);
                     // The row is exact but for its own uncertainty.
-                    form.error += layer.uncertainty * self.reach(network, index, layer.weights.row(i));
+                    form.error +=
+                        layer.uncertainty * self.reach(network, index, layer.weights.row(i));
                     self.least(network, index, form, |_| None, |_| 0.0)
                 };
                 let (l, u) = (l.max(side(1.0)), u.min(-side(-1.0)));
@@ -275,7 +359,11 @@ impl Bounds {
 
     /// Largest |row·x| by interval arithmetic over what layer `index` takes.
     fn reach(&self, network: &Network, index: usize, row: &[f64]) -> f64 {
-        row.iter().enumerate().map(|(j, w)| w.abs() * self.magnitude(network, index, j)).sum::<f64>() * (1.0 + 1e-9)
+        row.iter()
+            .enumerate()
+            .map(|(j, w)| w.abs() * self.magnitude(network, index, j))
+            .sum::<f64>()
+            * (1.0 + 1e-9)
     }
 
     /// Largest absolute value of input j of layer `index`.
@@ -303,7 +391,10 @@ impl Bounds {
         multiplier: impl Fn(usize) -> f64,
     ) -> f64 {
         let doubts = form.doubts.iter().enumerate();
-        form.error += doubts.map(|(j, d)| d * self.magnitude(network, index, j)).sum::<f64>() * (1.0 + 1e-9);
+        form.error += doubts
+            .map(|(j, d)| d * self.magnitude(network, index, j))
+            .sum::<f64>()
+            * (1.0 + 1e-9);
         for (depth, layer) in network.layers()[..index].iter().enumerate().rev() {
             let first = self.first[depth];
             let mut before = Form::zero(layer.inputs());
@@ -311,13 +402,21 @@ impl Bounds {
             let mut sizes = vec![0.0; layer.inputs()];
             for (j, &c) in form.coefficients.iter().enumerate() {
                 let bounds = self.layers[depth][j];
-                let (factor, offset) = line(layer.activation, bounds, c, first.and_then(|f| slope(f + j)));
+                let (factor, offset) = line(
+                    layer.activation,
+                    bounds,
+                    c,
+                    first.and_then(|f| slope(f + j)),
+                );
                 let lambda = first.map_or(0.0, |f| multiplier(f + j));
                 let total = factor + lambda;
                 before.constant += offset + total * layer.bias[j];
                 before.error += ULP
-                    * (before.constant.abs() + offset.abs() + (total * layer.bias[j]).abs()
-                        + (factor.abs() + lambda.abs() + c.abs()) * bounds.0.abs().max(bounds.1.abs()));
+                    * (before.constant.abs()
+                        + offset.abs()
+                        + (total * layer.bias[j]).abs()
+                        + (factor.abs() + lambda.abs() + c.abs())
+                            * bounds.0.abs().max(bounds.1.abs()));
                 if total == 0.0 {
                     continue;
                 }
@@ -329,13 +428,21 @@ impl Bounds {
             }
             // Each coefficient was summed from so many products.
             let terms = form.coefficients.len() as f64 * ULP + layer.uncertainty;
-            let reach = sizes.iter().enumerate().map(|(i, s)| s * self.magnitude(network, depth, i));
+            let reach = sizes
+                .iter()
+                .enumerate()
+                .map(|(i, s)| s * self.magnitude(network, depth, i));
             before.error += terms * reach.sum::<f64>() + TINY;
             form = before;
         }
         let mut least = form.constant;
         let mut size = least.abs();
-        for ((&c, &lo), &hi) in form.coefficients.iter().zip(&self.region.lower).zip(&self.region.upper) {
+        for ((&c, &lo), &hi) in form
+            .coefficients
+            .iter()
+            .zip(&self.region.lower)
+            .zip(&self.region.upper)
+        {
             let term = (c * lo).min(c * hi);
             least += term;
             size += term.abs();
@@ -363,7 +470,11 @@ fn line(activation: Activation, (l, u): (f64, f64), c: f64, slope: Option<f64>) 
         Activation::Tanh => {
             let (low, high) = (l.tanh(), u.tanh());
             let flattest = ((1.0 - low * low).min(1.0 - high * high) - 1e-9).max(0.0);
-            let offset = if c >= 0.0 { low - flattest * l - 1e-14 } else { high - flattest * u + 1e-14 };
+            let offset = if c >= 0.0 {
+                low - flattest * l - 1e-14
+            } else {
+                high - flattest * u + 1e-14
+            };
             (c * flattest, c * offset)
         }
     }

@@ -21,10 +21,24 @@ impl<'a> Runner<'a> {
         let columns = network
             .layers()
             .iter()
-            .map(|l| (0..l.inputs()).flat_map(|j| (0..l.outputs()).map(move |i| l.weights.row(i)[j])).collect())
+            .map(|l| {
+                (0..l.inputs())
+                    .flat_map(|j| (0..l.outputs()).map(move |i| l.weights.row(i)[j]))
+                    .collect()
+            })
             .collect();
-        let values = network.layers().iter().map(|l| vec![0.0; l.outputs()]).collect();
-        Self { network, columns, values, gradient: Vec::new(), next: Vec::new() }
+        let values = network
+            .layers()
+            .iter()
+            .map(|l| vec![0.0; l.outputs()])
+            .collect();
+        Self {
+            network,
+            columns,
+            values,
+            gradient: Vec::new(),
+            next: Vec::new(),
+        }
     }
 
     /// The outputs.
@@ -35,7 +49,10 @@ impl<'a> Runner<'a> {
             let from = before.last().map_or(input, Vec::as_slice);
             let sums = &mut rest[0];
             sums.copy_from_slice(&layer.bias);
-            for (&x, column) in from.iter().zip(self.columns[index].chunks_exact(layer.outputs())) {
+            for (&x, column) in from
+                .iter()
+                .zip(self.columns[index].chunks_exact(layer.outputs()))
+            {
                 if x != 0.0 {
                     add_scaled(sums, column, x);
                 }

@@ -22,23 +22,43 @@ pub(super) fn compose(rows: &[f64], weights: &[f64], active: usize, neurons: usi
     let columns = z.len() / neurons;
     let mut c = 0;
     while c + 4 <= columns {
-        tiles::<4>(&rows[c * active..(c + 4) * active], weights, active, neurons, &mut z[c * neurons..]);
+        tiles::<4>(
+            &rows[c * active..(c + 4) * active],
+            weights,
+            active,
+            neurons,
+            &mut z[c * neurons..],
+        );
         c += 4;
     }
     while c < columns {
-        tiles::<1>(&rows[c * active..(c + 1) * active], weights, active, neurons, &mut z[c * neurons..]);
+        tiles::<1>(
+            &rows[c * active..(c + 1) * active],
+            weights,
+            active,
+            neurons,
+            &mut z[c * neurons..],
+        );
         c += 1;
     }
 }
 
 /// `N` columns of [`compose`], held in registers while the active neurons pass by.
 #[inline(always)]
-fn tiles<const N: usize>(rows: &[f64], weights: &[f64], active: usize, neurons: usize, z: &mut [f64]) {
+fn tiles<const N: usize>(
+    rows: &[f64],
+    weights: &[f64],
+    active: usize,
+    neurons: usize,
+    z: &mut [f64],
+) {
     let row: [&[f64]; N] = std::array::from_fn(|k| &rows[k * active..(k + 1) * active]);
     for first in (0..neurons).step_by(TILE) {
         let mut sums = [[0.0; TILE]; N];
         for a in 0..active {
-            let Some(w) = weights[a * neurons + first..].first_chunk::<TILE>() else { return };
+            let Some(w) = weights[a * neurons + first..].first_chunk::<TILE>() else {
+                return;
+            };
             for k in 0..N {
                 let x = row[k][a];
                 for i in 0..TILE {

@@ -14,7 +14,11 @@ impl Matrix {
     /// A matrix of zeros.
     #[must_use]
     pub fn zeros(rows: usize, cols: usize) -> Self {
-        Self { rows, cols, data: vec![0.0; rows * cols] }
+        Self {
+            rows,
+            cols,
+            data: vec![0.0; rows * cols],
+        }
     }
 
     /// A matrix from row-major data; `None` if there are not rows × cols values.
@@ -163,7 +167,10 @@ impl Network {
             width = l.outputs();
         }
         if layers.is_empty() {
-            return Err(ModelError { layer: 0, what: "is missing: a network has at least one" });
+            return Err(ModelError {
+                layer: 0,
+                what: "is missing: a network has at least one",
+            });
         }
         Ok(Self { inputs, layers })
     }
@@ -196,14 +203,18 @@ impl Network {
             let relative = layer.relative_error();
             let (z, e): (Vec<f64>, Vec<f64>) = (0..layer.outputs())
                 .map(|i| {
-                    let (mut sum, mut size, mut carried) = (layer.bias[i], layer.bias[i].abs(), 0.0);
+                    let (mut sum, mut size, mut carried) =
+                        (layer.bias[i], layer.bias[i].abs(), 0.0);
                     for ((w, v), e) in layer.weights.row(i).iter().zip(&values).zip(&errors) {
                         sum += w * v;
                         size += (w * v).abs();
                         carried += w.abs() * e;
                     }
                     let error = (carried * (1.0 + relative) + relative * size + UNDERFLOW) * SPARE;
-                    (layer.activation.apply(sum), error + layer.activation.error())
+                    (
+                        layer.activation.apply(sum),
+                        error + layer.activation.error(),
+                    )
                 })
                 .unzip();
             (values, errors) = (z, e);
@@ -218,8 +229,15 @@ impl Network {
         for layer in &self.layers {
             values = (0..layer.outputs())
                 .map(|i| {
-                    let sum = layer.weights.row(i).iter().zip(&values).fold(0.0_f32, |sum, (w, v)| sum + *w as f32 * v);
-                    layer.activation.apply(f64::from(sum + layer.bias[i] as f32)) as f32
+                    let sum = layer
+                        .weights
+                        .row(i)
+                        .iter()
+                        .zip(&values)
+                        .fold(0.0_f32, |sum, (w, v)| sum + *w as f32 * v);
+                    layer
+                        .activation
+                        .apply(f64::from(sum + layer.bias[i] as f32)) as f32
                 })
                 .collect();
         }

@@ -48,7 +48,12 @@ impl Ascent {
     /// if it is positive, the region misses the conjunction, and the weights and slopes are those
     /// that show it. Otherwise they are the last ones tried.
     #[inline(always)]
-    pub(super) fn bound(&mut self, workspace: &Workspace, region: &InputBox, atoms: Range<usize>) -> f64 {
+    pub(super) fn bound(
+        &mut self,
+        workspace: &Workspace,
+        region: &InputBox,
+        atoms: Range<usize>,
+    ) -> f64 {
         if atoms.is_empty() {
             // Nothing has to hold for an empty conjunction: it is the whole space.
             return f64::NEG_INFINITY;
@@ -95,7 +100,11 @@ impl Ascent {
     /// forms are linear in the inputs, and a linear programme finds the best weights and
     /// multipliers; the bound itself is then evaluated soundly. Failing that, gives an input
     /// that may be a counterexample.
-    pub(super) fn finish(&mut self, workspace: &Workspace, region: &InputBox) -> Result<f64, Option<Vec<f64>>> {
+    pub(super) fn finish(
+        &mut self,
+        workspace: &Workspace,
+        region: &InputBox,
+    ) -> Result<f64, Option<Vec<f64>>> {
         let symbols = &workspace.symbols;
         let forms = &self.forms[..self.weights.len()];
         if let Some(weights) = programme::best_weights(forms, self.atoms, region) {
@@ -105,25 +114,33 @@ impl Ascent {
                 return Ok(bound);
             }
         }
-        Err(programme::least_excess(&self.forms[..self.weights.len()], self.atoms, region))
+        Err(programme::least_excess(
+            &self.forms[..self.weights.len()],
+            self.atoms,
+            region,
+        ))
     }
 
     /// Takes over the forms of a conjunction's atoms and of the assumed phases.
     fn load(&mut self, workspace: &Workspace, atoms: Range<usize>) {
         self.atoms = atoms.len();
         let count = self.atoms + workspace.assumed.len();
-        self.forms.resize_with(count.max(self.forms.len()), Vec::new);
+        self.forms
+            .resize_with(count.max(self.forms.len()), Vec::new);
         self.sizes.clear();
         for (form, atom) in self.forms.iter_mut().zip(atoms) {
             self.sizes.push(workspace.atom(atom, form));
         }
-        for (form, (_, assumed, size)) in self.forms[self.atoms..].iter_mut().zip(&workspace.assumed) {
+        for (form, (_, assumed, size)) in
+            self.forms[self.atoms..].iter_mut().zip(&workspace.assumed)
+        {
             form.clone_from(assumed);
             self.sizes.push(*size);
         }
         let symbols = &workspace.symbols;
         self.slopes.clear();
-        self.slopes.extend((0..symbols.count()).map(|s| symbols.lines(s).lower_slope));
+        self.slopes
+            .extend((0..symbols.count()).map(|s| symbols.lines(s).lower_slope));
         self.weights.clear();
         self.weights.resize(count, 0.0);
     }
@@ -135,7 +152,9 @@ impl Ascent {
         self.form.clear();
         self.form.resize(symbols.columns(), 0.0);
         let mut errors = UNDERFLOW;
-        for ((form, &(error, size)), &weight) in self.forms.iter().zip(&self.sizes).zip(&self.weights) {
+        for ((form, &(error, size)), &weight) in
+            self.forms.iter().zip(&self.sizes).zip(&self.weights)
+        {
             if weight > 0.0 {
                 add_scaled(&mut self.form, form, weight);
                 errors += weight * (error + 2.0 * g * size);
@@ -150,8 +169,11 @@ impl Ascent {
                 continue;
             }
             let lines = symbols.lines(symbol);
-            let (slope, offset) =
-                if c > 0.0 { (self.slopes[symbol], lines.lower_offset) } else { (lines.upper_slope, lines.upper_offset) };
+            let (slope, offset) = if c > 0.0 {
+                (self.slopes[symbol], lines.lower_offset)
+            } else {
+                (lines.upper_slope, lines.upper_offset)
+            };
             let factor = c * slope;
             let (error, size) = symbols.size(symbol);
             errors += factor.abs() * (error + g * size) + c.abs() * g * (offset.abs() + size);
@@ -163,7 +185,11 @@ impl Ascent {
         let mut least = self.form[0];
         self.point.clear();
         self.point.push(1.0);
-        for ((&c, &lo), &hi) in self.form[1..symbols.fixed()].iter().zip(&region.lower).zip(&region.upper) {
+        for ((&c, &lo), &hi) in self.form[1..symbols.fixed()]
+            .iter()
+            .zip(&region.lower)
+            .zip(&region.upper)
+        {
             let x = if c > 0.0 { lo } else { hi };
             least += c * x;
             self.point.push(x);
@@ -182,7 +208,10 @@ impl Ascent {
             let lines = symbols.lines(symbol);
             let c = self.coefficients[symbol];
             let (value, slope) = if c > 0.0 {
-                (self.slopes[symbol] * z + lines.lower_offset, if lines.free { c * z } else { 0.0 })
+                (
+                    self.slopes[symbol] * z + lines.lower_offset,
+                    if lines.free { c * z } else { 0.0 },
+                )
             } else {
                 (lines.upper_slope * z + lines.upper_offset, 0.0)
             };
@@ -197,12 +226,15 @@ impl Ascent {
         }
         let value = |form: &Vec<f64>| dot(form, &self.point[..form.len()]);
         self.steps.clear();
-        self.steps.extend(self.forms[..self.weights.len()].iter().map(value));
+        self.steps
+            .extend(self.forms[..self.weights.len()].iter().map(value));
         let (atoms, assumed) = self.weights.split_at_mut(self.atoms);
         let (excesses, breaches) = self.steps.split_at(self.atoms);
         if atoms.len() > 1 {
             let mean = excesses.iter().sum::<f64>() / atoms.len() as f64;
-            let widest = excesses.iter().fold(0.0_f64, |w, s| w.max((s - mean).abs()));
+            let widest = excesses
+                .iter()
+                .fold(0.0_f64, |w, s| w.max((s - mean).abs()));
             if widest > 0.0 {
                 for (weight, excess) in atoms.iter_mut().zip(excesses) {
                     *weight = (*weight + 0.5 * length * (excess - mean) / widest).max(0.0);
@@ -229,7 +261,11 @@ impl Ascent {
     /// `scores` how much of that each input is answerable for.
     pub(super) fn blame(&self, workspace: &Workspace, slacks: &mut [f64], scores: &mut [f64]) {
         let symbols = &workspace.symbols;
-        for (symbol, (sum, shares)) in slacks.iter_mut().zip(workspace.shares.chunks_exact(scores.len())).enumerate() {
+        for (symbol, (sum, shares)) in slacks
+            .iter_mut()
+            .zip(workspace.shares.chunks_exact(scores.len()))
+            .enumerate()
+        {
             let slack = self.slack(symbols, symbol);
             *sum += slack;
             for (score, share) in scores.iter_mut().zip(shares) {
@@ -239,7 +275,12 @@ impl Ascent {
     }
 
     /// The record of the last evaluation.
-    pub(super) fn refutation(&self, workspace: &Workspace, conjunction: u32, bound: f64) -> Refutation {
+    pub(super) fn refutation(
+        &self,
+        workspace: &Workspace,
+        conjunction: u32,
+        bound: f64,
+    ) -> Refutation {
         let symbols = &workspace.symbols;
         let unusual = |&s: &usize| self.slopes[s] != symbols.lines(s).lower_slope;
         let (weights, multipliers) = self.weights.split_at(self.atoms);
@@ -247,19 +288,33 @@ impl Ascent {
         Refutation {
             conjunction,
             weights: weights.to_vec(),
-            multipliers: assumed.map(|((phase, ..), &m)| (phase.0, m)).filter(|&(_, m)| m > 0.0).collect(),
-            slopes: (0..symbols.count()).filter(unusual).map(|s| (symbols.neuron(s) as u32, self.slopes[s])).collect(),
+            multipliers: assumed
+                .map(|((phase, ..), &m)| (phase.0, m))
+                .filter(|&(_, m)| m > 0.0)
+                .collect(),
+            slopes: (0..symbols.count())
+                .filter(unusual)
+                .map(|s| (symbols.neuron(s) as u32, self.slopes[s]))
+                .collect(),
             bound,
         }
     }
 
     /// The most that replacing the symbol by a line can have cost the last evaluation.
     fn slack(&self, symbols: &Symbols, symbol: usize) -> f64 {
-        let (c, lines, (l, u)) = (self.coefficients[symbol], symbols.lines(symbol), symbols.interval(symbol));
+        let (c, lines, (l, u)) = (
+            self.coefficients[symbol],
+            symbols.lines(symbol),
+            symbols.interval(symbol),
+        );
         if !lines.free {
             return c.abs() * (lines.upper_offset - lines.lower_offset);
         }
         let slope = self.slopes[symbol];
-        if c > 0.0 { c * ((1.0 - slope) * u).max(-slope * l) } else { -c * lines.upper_offset }
+        if c > 0.0 {
+            c * ((1.0 - slope) * u).max(-slope * l)
+        } else {
+            -c * lines.upper_offset
+        }
     }
 }

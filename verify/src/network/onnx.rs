@@ -57,10 +57,15 @@ pub enum OnnxError {
 /// operators above: the first offending node and operator are named.
 pub fn read(bytes: &[u8]) -> Result<Network, OnnxError> {
     let model = proto::Model::decode(bytes).map_err(|e| OnnxError::Encoding(e.to_string()))?;
-    let graph = model.graph.ok_or_else(|| OnnxError::Graph("the file holds no graph".to_owned()))?;
+    let graph = model
+        .graph
+        .ok_or_else(|| OnnxError::Graph("the file holds no graph".to_owned()))?;
     let mut values: HashMap<&str, Value> = HashMap::new();
     for initializer in &graph.initializer {
-        values.insert(&initializer.name, Value::Constant(tensor::read(initializer)?));
+        values.insert(
+            &initializer.name,
+            Value::Constant(tensor::read(initializer)?),
+        );
     }
     let inputs = graph_inputs(&graph, &values)?;
     let mut builder = Builder::new(inputs.iter().map(|(_, shape)| shape.size()).sum());
@@ -71,22 +76,33 @@ pub fn read(bytes: &[u8]) -> Result<Network, OnnxError> {
         offset = end;
     }
     for node in &graph.node {
-        let value = operators::apply(node, &values, &mut builder).map_err(|what| OnnxError::Operator {
-            node: if node.name.is_empty() { node.output.join(", ") } else { node.name.clone() },
-            operator: node.op_type.clone(),
-            what,
-        })?;
+        let value =
+            operators::apply(node, &values, &mut builder).map_err(|what| OnnxError::Operator {
+                node: if node.name.is_empty() {
+                    node.output.join(", ")
+                } else {
+                    node.name.clone()
+                },
+                operator: node.op_type.clone(),
+                what,
+            })?;
         if let Some(output) = node.output.first() {
             values.insert(output, value);
         }
     }
     let [output] = graph.output.as_slice() else {
-        return Err(OnnxError::Graph(format!("{} outputs; exactly one is supported", graph.output.len())));
+        return Err(OnnxError::Graph(format!(
+            "{} outputs; exactly one is supported",
+            graph.output.len()
+        )));
     };
     let Some(Value::Variable(value)) = values.remove(output.name.as_str()) else {
-        return Err(OnnxError::Graph(format!("output {:?} does not depend on an input", output.name)));
+        return Err(OnnxError::Graph(format!(
+            "output {:?} does not depend on an input",
+            output.name
+        )));
     };
-    builder.finish(value).map_err(OnnxError::Graph)
+    builder.finish(&value).map_err(OnnxError::Graph)
 }
 
 /// The graph's inputs that are not initialisers, with their shapes.
@@ -94,13 +110,28 @@ fn graph_inputs<'a>(
     graph: &'a proto::Graph,
     constants: &HashMap<&str, Value>,
 ) -> Result<Vec<(&'a str, Shape)>, OnnxError> {
-    let variable = graph.input.iter().filter(|input| !constants.contains_key(input.name.as_str()));
+    let variable = graph
+        .input
+        .iter()
+        .filter(|input| !constants.contains_key(input.name.as_str()));
     let inputs = variable
         .map(|input| {
-            let declared = input.r#type.as_ref().and_then(|t| t.tensor_type.as_ref()).and_then(|t| t.shape.as_ref());
-            let dims = declared.map(|shape| shape.dim.iter().map(|d| d.dim_value.max(1)).collect::<Vec<_>>());
+            let declared = input
+                .r#type
+                .as_ref()
+                .and_then(|t| t.tensor_type.as_ref())
+                .and_then(|t| t.shape.as_ref());
+            let dims = declared.map(|shape| {
+                shape
+                    .dim
+                    .iter()
+                    .map(|d| d.dim_value.max(1))
+                    .collect::<Vec<_>>()
+            });
             let shape = dims.and_then(|dims| Shape::new(&dims));
-            let shape = shape.ok_or_else(|| OnnxError::Graph(format!("input {:?} has no usable shape", input.name)))?;
+            let shape = shape.ok_or_else(|| {
+                OnnxError::Graph(format!("input {:?} has no usable shape", input.name))
+            })?;
             Ok((input.name.as_str(), shape))
         })
         .collect::<Result<Vec<_>, OnnxError>>()?;

@@ -72,7 +72,12 @@ impl Proof {
         let mut stack = vec![0];
         while let Some(cell) = stack.pop().and_then(|i: usize| self.cells.get(i)) {
             for r in &cell.refuted {
-                let pairs = |pairs: &[(u32, f64)]| pairs.iter().map(|(n, v)| format!(" {n}:{v:?}")).collect::<String>();
+                let pairs = |pairs: &[(u32, f64)]| {
+                    pairs
+                        .iter()
+                        .map(|(n, v)| format!(" {n}:{v:?}"))
+                        .collect::<String>()
+                };
                 let weights: String = r.weights.iter().map(|w| format!(" {w:?}")).collect();
                 // Writing to a string cannot fail.
                 let _ = writeln!(
@@ -103,11 +108,16 @@ impl Proof {
     ///
     /// # Errors
     /// With the line, if the text is not what [`Self::to_text`] writes.
-    pub fn from_lines<'a>(lines: &mut impl Iterator<Item = (usize, &'a str)>) -> Result<Self, ProofError> {
+    pub fn from_lines<'a>(
+        lines: &mut impl Iterator<Item = (usize, &'a str)>,
+    ) -> Result<Self, ProofError> {
         let mut cells = vec![Cell::default()];
         let mut stack = vec![0_usize];
         while let Some(&index) = stack.last() {
-            let (line, text) = lines.next().ok_or(ProofError { line: 0, what: "the proof ends before its last leaf" })?;
+            let (line, text) = lines.next().ok_or(ProofError {
+                line: 0,
+                what: "the proof ends before its last leaf",
+            })?;
             let fault = |what| ProofError { line, what };
             let mut words = text.split_whitespace();
             match words.next() {
@@ -117,14 +127,21 @@ impl Proof {
                     stack.pop();
                 }
                 Some(kind @ ("x" | "z")) => {
-                    let which = words.next().and_then(|w| w.parse().ok()).ok_or(fault("no index"))?;
+                    let which = words
+                        .next()
+                        .and_then(|w| w.parse().ok())
+                        .ok_or(fault("no index"))?;
                     let split = if kind == "z" {
                         Split::Phase { neuron: which }
                     } else {
-                        let at = words.next().and_then(number).ok_or(fault("no finite place to split at"))?;
+                        let at = words
+                            .next()
+                            .and_then(number)
+                            .ok_or(fault("no finite place to split at"))?;
                         Split::Input { input: which, at }
                     };
-                    let first = u32::try_from(cells.len()).map_err(|_| fault("too many regions"))?;
+                    let first =
+                        u32::try_from(cells.len()).map_err(|_| fault("too many regions"))?;
                     cells[index].split = Some((split, first));
                     cells.extend([Cell::default(), Cell::default()]);
                     stack.pop();
@@ -141,7 +158,10 @@ fn number(word: &str) -> Option<f64> {
     word.parse().ok().filter(|v: &f64| v.is_finite())
 }
 
-fn refutation<'a>(words: impl Iterator<Item = &'a str>, line: usize) -> Result<Refutation, ProofError> {
+fn refutation<'a>(
+    words: impl Iterator<Item = &'a str>,
+    line: usize,
+) -> Result<Refutation, ProofError> {
     let fault = |what| ProofError { line, what };
     let mut parts = [const { Vec::new() }; 3];
     let mut part = 0;
@@ -161,12 +181,22 @@ fn refutation<'a>(words: impl Iterator<Item = &'a str>, line: usize) -> Result<R
             let (neuron, value) = word.split_once(':')?;
             Some((neuron.parse().ok()?, number(value)?))
         };
-        words.into_iter().map(pair).collect::<Option<Vec<_>>>().ok_or(fault("expected neuron:value"))
+        words
+            .into_iter()
+            .map(pair)
+            .collect::<Option<Vec<_>>>()
+            .ok_or(fault("expected neuron:value"))
     };
     Ok(Refutation {
-        conjunction: conjunction.parse().map_err(|_| fault("no index of a conjunction"))?,
+        conjunction: conjunction
+            .parse()
+            .map_err(|_| fault("no index of a conjunction"))?,
         bound: number(bound).ok_or(fault("the bound is not a number"))?,
-        weights: weights.iter().map(|w| number(w)).collect::<Option<_>>().ok_or(fault("a weight is not a number"))?,
+        weights: weights
+            .iter()
+            .map(|w| number(w))
+            .collect::<Option<_>>()
+            .ok_or(fault("a weight is not a number"))?,
         multipliers: pairs(multipliers)?,
         slopes: pairs(slopes)?,
     })
@@ -188,10 +218,21 @@ mod tests {
             }],
             ..Cell::default()
         };
-        let root = Cell { split: Some((Split::Input { input: 2, at: -0.1 }, 1)), ..Cell::default() };
-        let inner = Cell { split: Some((Split::Phase { neuron: 7 }, 3)), ..leaf(0.5) };
-        let empty = Cell { empty: true, ..Cell::default() };
-        Proof { cells: vec![root, inner, leaf(1e-3), leaf(1e300), empty] }
+        let root = Cell {
+            split: Some((Split::Input { input: 2, at: -0.1 }, 1)),
+            ..Cell::default()
+        };
+        let inner = Cell {
+            split: Some((Split::Phase { neuron: 7 }, 3)),
+            ..leaf(0.5)
+        };
+        let empty = Cell {
+            empty: true,
+            ..Cell::default()
+        };
+        Proof {
+            cells: vec![root, inner, leaf(1e-3), leaf(1e300), empty],
+        }
     }
 
     #[test]

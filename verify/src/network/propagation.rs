@@ -38,7 +38,9 @@ impl Prepared {
         let mut neurons = 0;
         for layer in network.layers() {
             let (inputs, outputs) = (layer.inputs(), layer.outputs());
-            let columns = (0..inputs).flat_map(|j| (0..outputs).map(move |i| layer.weights.row(i)[j])).collect();
+            let columns = (0..inputs)
+                .flat_map(|j| (0..outputs).map(move |i| layer.weights.row(i)[j]))
+                .collect();
             layers.push(PreparedLayer {
                 outputs,
                 columns,
@@ -48,19 +50,30 @@ impl Prepared {
                 uncertainty: 2.0 * layer.uncertainty,
                 first: neurons,
             });
-            neurons += if layer.activation == Activation::Identity { 0 } else { outputs };
+            neurons += if layer.activation == Activation::Identity {
+                0
+            } else {
+                outputs
+            };
         }
         let outputs = network.outputs();
         layers.push(PreparedLayer {
             outputs: atoms.len(),
-            columns: (0..outputs).flat_map(|j| atoms.iter().map(move |a| a.coefficients[j])).collect(),
+            columns: (0..outputs)
+                .flat_map(|j| atoms.iter().map(move |a| a.coefficients[j]))
+                .collect(),
             bias: atoms.iter().map(|a| -a.bound).collect(),
             activation: Activation::Identity,
             relative_error: super::rounding::gamma(outputs + 4),
             uncertainty: 0.0,
             first: neurons,
         });
-        Self { inputs: network.inputs(), layers, neurons, enclose: Lines::relu }
+        Self {
+            inputs: network.inputs(),
+            layers,
+            neurons,
+            enclose: Lines::relu,
+        }
     }
 }
 
@@ -141,7 +154,9 @@ impl Workspace {
             }
             let own = &mut bounds[layer.first..layer.first + layer.outputs];
             let is_assumed = |i: usize| phases.iter().any(|p| p.0 as usize == layer.first + i);
-            let alive = |i: &usize| layer.activation != Activation::Relu || own[*i].1 > 0.0 || is_assumed(*i);
+            let alive = |i: &usize| {
+                layer.activation != Activation::Relu || own[*i].1 > 0.0 || is_assumed(*i)
+            };
             self.forms.neurons.extend((0..layer.outputs).filter(alive));
             self.compose_layer(layer);
             self.tighten(layer, region, own)?;
@@ -156,19 +171,27 @@ impl Workspace {
         let (wanted, active) = (self.forms.neurons.len(), self.active.len());
         let lanes = padded(wanted);
         let columns = self.symbols.columns();
-        let before = if active == 0 { 0 } else { self.previous.coefficients.len() / padded(self.previous.neurons.len()) };
+        let before = if active == 0 {
+            0
+        } else {
+            self.previous.coefficients.len() / padded(self.previous.neurons.len())
+        };
 
         self.compact_weights.clear();
         for &lane in &self.active {
-            let weights = &layer.columns[self.previous.neurons[lane] * layer.outputs..][..layer.outputs];
-            self.compact_weights.extend(self.forms.neurons.iter().map(|&i| weights[i]));
-            self.compact_weights.resize(self.compact_weights.len() + lanes - wanted, 0.0);
+            let weights =
+                &layer.columns[self.previous.neurons[lane] * layer.outputs..][..layer.outputs];
+            self.compact_weights
+                .extend(self.forms.neurons.iter().map(|&i| weights[i]));
+            self.compact_weights
+                .resize(self.compact_weights.len() + lanes - wanted, 0.0);
         }
         self.compact_rows.clear();
         let stride = padded(self.previous.neurons.len());
         for column in 0..before {
             let row = &self.previous.coefficients[column * stride..(column + 1) * stride];
-            self.compact_rows.extend(self.active.iter().map(|&lane| row[lane]));
+            self.compact_rows
+                .extend(self.active.iter().map(|&lane| row[lane]));
         }
 
         let z = &mut self.forms.coefficients;
@@ -177,12 +200,23 @@ impl Workspace {
         if lanes == 0 {
             return;
         }
-        compose(&self.compact_rows, &self.compact_weights, active, lanes, &mut z[..before * lanes]);
+        compose(
+            &self.compact_rows,
+            &self.compact_weights,
+            active,
+            lanes,
+            &mut z[..before * lanes],
+        );
         let errors = &mut self.forms.errors;
         errors.clear();
         errors.resize(lanes, UNDERFLOW);
-        for (&lane, weights) in self.active.iter().zip(self.compact_weights.chunks_exact(lanes)) {
-            let carried = self.previous.errors[lane] * (1.0 + 1e-9) + layer.relative_error * self.previous.sizes[lane];
+        for (&lane, weights) in self
+            .active
+            .iter()
+            .zip(self.compact_weights.chunks_exact(lanes))
+        {
+            let carried = self.previous.errors[lane] * (1.0 + 1e-9)
+                + layer.relative_error * self.previous.sizes[lane];
             for (error, w) in errors.iter_mut().zip(weights) {
                 *error += w.abs() * carried;
             }
@@ -214,9 +248,16 @@ impl Workspace {
 
     /// Bounds the neurons of the layer that are not known to be stable.
     #[inline(always)]
-    fn tighten(&mut self, layer: &PreparedLayer, region: &InputBox, bounds: &mut [Interval]) -> Result<(), Empty> {
+    fn tighten(
+        &mut self,
+        layer: &PreparedLayer,
+        region: &InputBox,
+        bounds: &mut [Interval],
+    ) -> Result<(), Empty> {
         let inputs = region.lower.len();
-        let open = |i: usize| layer.activation != Activation::Relu || (bounds[i].0 < 0.0 && bounds[i].1 > 0.0);
+        let open = |i: usize| {
+            layer.activation != Activation::Relu || (bounds[i].0 < 0.0 && bounds[i].1 > 0.0)
+        };
         let mut lanes = std::mem::take(&mut self.open);
         lanes.clear();
         lanes.extend((0..self.forms.neurons.len()).filter(|&l| open(self.forms.neurons[l])));
@@ -232,16 +273,23 @@ impl Workspace {
                     return Err(Empty);
                 }
                 let start = self.shares.len();
-                let reach = |i: usize| (self.block[i + 1][2 * k].abs() + self.block[i + 1][2 * k + 1].abs()) * (region.upper[i] - region.lower[i]);
+                let reach = |i: usize| {
+                    (self.block[i + 1][2 * k].abs() + self.block[i + 1][2 * k + 1].abs())
+                        * (region.upper[i] - region.lower[i])
+                };
                 self.shares.extend((0..inputs).map(reach));
-                let total: f64 = self.shares[start..].iter().sum::<f64>().max(f64::MIN_POSITIVE);
+                let total: f64 = self.shares[start..]
+                    .iter()
+                    .sum::<f64>()
+                    .max(f64::MIN_POSITIVE);
                 self.shares[start..].iter_mut().for_each(|s| *s /= total);
             }
         }
         // Shares are kept for those that stay unstable only.
         let mut kept = first_share;
         for (k, &lane) in lanes.iter().enumerate() {
-            if layer.activation != Activation::Relu || is_unstable(bounds[self.forms.neurons[lane]]) {
+            if layer.activation != Activation::Relu || is_unstable(bounds[self.forms.neurons[lane]])
+            {
                 let from = first_share + k * inputs;
                 self.shares.copy_within(from..from + inputs, kept);
                 kept += inputs;
@@ -273,22 +321,34 @@ impl Workspace {
             errors[2 * k + 1] = error;
         }
         self.symbols.substitute(&mut self.block, &mut errors);
-        self.symbols.least(&self.block, &errors, &region.lower, &region.upper)
+        self.symbols
+            .least(&self.block, &errors, &region.lower, &region.upper)
     }
 
     /// Sorts the layer's neurons into active forms and new symbols.
     #[inline(always)]
-    fn release(&mut self, layer: &PreparedLayer, bounds: &[Interval], phases: &[Phase], enclose: fn(f64, f64) -> Lines) {
+    fn release(
+        &mut self,
+        layer: &PreparedLayer,
+        bounds: &[Interval],
+        phases: &[Phase],
+        enclose: fn(f64, f64) -> Lines,
+    ) {
         self.direct.clear();
         self.active.clear();
         let stride = padded(self.forms.neurons.len());
         for (lane, &i) in self.forms.neurons.iter().enumerate() {
             let (l, u) = bounds[i];
-            let row = self.forms.coefficients.chunks_exact(stride).map(|row| row[lane]);
+            let row = self
+                .forms
+                .coefficients
+                .chunks_exact(stride)
+                .map(|row| row[lane]);
             let sizes = (self.forms.errors[lane], self.forms.sizes[lane]);
             if let Some(&phase) = phases.iter().find(|p| p.0 as usize == layer.first + i) {
                 let sign = if phase.1 { -1.0 } else { 1.0 };
-                self.assumed.push((phase, row.clone().map(|c| sign * c).collect(), sizes));
+                self.assumed
+                    .push((phase, row.clone().map(|c| sign * c).collect(), sizes));
             }
             let lines = match layer.activation {
                 Activation::Relu if u <= 0.0 => continue,
@@ -300,7 +360,9 @@ impl Workspace {
                 Activation::Tanh => Lines::tanh(l, u),
                 Activation::Identity => continue,
             };
-            let column = self.symbols.push(layer.first + i, row, sizes, (l, u), lines);
+            let column = self
+                .symbols
+                .push(layer.first + i, row, sizes, (l, u), lines);
             self.direct.push((i, column));
         }
     }
@@ -309,7 +371,12 @@ impl Workspace {
     pub(super) fn atom(&self, k: usize, form: &mut Vec<f64>) -> (f64, f64) {
         let stride = padded(self.forms.neurons.len());
         form.clear();
-        form.extend(self.forms.coefficients.chunks_exact(stride).map(|row| row[k]));
+        form.extend(
+            self.forms
+                .coefficients
+                .chunks_exact(stride)
+                .map(|row| row[k]),
+        );
         (self.forms.errors[k], self.forms.sizes[k])
     }
 }

@@ -36,15 +36,26 @@ impl Halfspace {
     pub fn certainly_holds(&self, y: &Evaluation) -> bool {
         let terms = self.coefficients.iter().zip(&y.values);
         let size: f64 = terms.clone().map(|(c, v)| (c * v).abs()).sum::<f64>() + self.bound.abs();
-        let carried: f64 = self.coefficients.iter().zip(&y.errors).map(|(c, e)| c.abs() * e).sum();
-        let error = super::rounding::gamma(y.values.len() + 4) * size + carried * super::rounding::SPARE;
+        let carried: f64 = self
+            .coefficients
+            .iter()
+            .zip(&y.errors)
+            .map(|(c, e)| c.abs() * e)
+            .sum();
+        let error =
+            super::rounding::gamma(y.values.len() + 4) * size + carried * super::rounding::SPARE;
         self.excess(&y.values) + error <= 0.0
     }
 
     /// coefficients · y − bound in plain `f64`: positive where the constraint is violated.
     #[must_use]
     pub fn excess(&self, y: &[f64]) -> f64 {
-        self.coefficients.iter().zip(y).map(|(c, v)| c * v).sum::<f64>() - self.bound
+        self.coefficients
+            .iter()
+            .zip(y)
+            .map(|(c, v)| c * v)
+            .sum::<f64>()
+            - self.bound
     }
 }
 
@@ -79,7 +90,10 @@ impl Property {
     pub fn certainly_violated(&self, input: &[f64], output: &Evaluation) -> bool {
         self.queries.iter().any(|query| {
             query.region.contains(input)
-                && query.unsafe_set.iter().any(|c| c.iter().all(|h| h.certainly_holds(output)))
+                && query
+                    .unsafe_set
+                    .iter()
+                    .any(|c| c.iter().all(|h| h.certainly_holds(output)))
         })
     }
 }

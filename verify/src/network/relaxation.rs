@@ -95,7 +95,12 @@ impl Symbols {
         self.neurons.clear();
         self.most.clear();
         self.most.push(1.0);
-        self.most.extend(lower.iter().zip(upper).map(|(lo, hi)| lo.abs().max(hi.abs())));
+        self.most.extend(
+            lower
+                .iter()
+                .zip(upper)
+                .map(|(lo, hi)| lo.abs().max(hi.abs())),
+        );
     }
 
     /// Adds a symbol, the output of a neuron that is bounded by `lines` where its pre-activation
@@ -110,7 +115,8 @@ impl Symbols {
     ) -> usize {
         self.rows.extend(row);
         self.ends.push(self.rows.len());
-        self.sizes.push((error, size + interval.0.abs().max(interval.1.abs())));
+        self.sizes
+            .push((error, size + interval.0.abs().max(interval.1.abs())));
         self.most.push(lines.most);
         self.lines.push(lines);
         self.intervals.push(interval);
@@ -135,7 +141,11 @@ impl Symbols {
 
     /// The row of a symbol's pre-activation.
     pub(super) fn row(&self, symbol: usize) -> &[f64] {
-        let start = if symbol == 0 { 0 } else { self.ends[symbol - 1] };
+        let start = if symbol == 0 {
+            0
+        } else {
+            self.ends[symbol - 1]
+        };
         &self.rows[start..self.ends[symbol]]
     }
 
@@ -179,7 +189,10 @@ impl Symbols {
             let coefficients = block[self.fixed + symbol];
             let lines = &self.lines[symbol];
             let (error, size) = self.sizes[symbol];
-            let (per_factor, per_coefficient) = (error + g * size, g * (lines.upper_offset.abs() + lines.lower_offset.abs() + size));
+            let (per_factor, per_coefficient) = (
+                error + g * size,
+                g * (lines.upper_offset.abs() + lines.lower_offset.abs() + size),
+            );
             let mut factors = [0.0; LANES];
             for i in 0..LANES {
                 let c = coefficients[i];
@@ -198,7 +211,13 @@ impl Symbols {
 
     /// The least value of each form over the box, errors subtracted: a sound lower bound.
     #[inline(always)]
-    pub(super) fn least(&self, block: &[Lane], errors: &Lane, lower: &[f64], upper: &[f64]) -> Lane {
+    pub(super) fn least(
+        &self,
+        block: &[Lane],
+        errors: &Lane,
+        lower: &[f64],
+        upper: &[f64],
+    ) -> Lane {
         let mut least = block[0];
         for ((coefficients, &lo), &hi) in block[1..].iter().zip(lower).zip(upper) {
             for i in 0..LANES {

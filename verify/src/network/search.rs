@@ -5,7 +5,6 @@
 //! the proof and the count of regions depend on the problem alone, not on the number of threads,
 //! and no more than the open ends of the running tasks are in memory.
 
-use super::{Branching, Settings};
 use super::attack::{confirmed, worst};
 use super::forward::Runner;
 use super::model::Network;
@@ -13,6 +12,7 @@ use super::objective::Ascent;
 use super::proof::{Cell, Proof, Split};
 use super::propagation::{Interval, Phase, Prepared, Workspace, is_unstable};
 use super::property::{Halfspace, InputBox, Property, Query};
+use super::{Branching, Settings};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::time::Instant;
@@ -67,14 +67,31 @@ pub(super) struct Outcome {
 }
 
 impl<'a> Problem<'a> {
-    pub(super) fn new(network: &'a Network, property: &'a Property, query: &'a Query, settings: Settings, deadline: Instant) -> Self {
+    pub(super) fn new(
+        network: &'a Network,
+        property: &'a Property,
+        query: &'a Query,
+        settings: Settings,
+        deadline: Instant,
+    ) -> Self {
         let atoms: Vec<&Halfspace> = query.unsafe_set.iter().flatten().collect();
-        Self { network, property, query, prepared: Prepared::new(network, &atoms), deadline, settings }
+        Self {
+            network,
+            property,
+            query,
+            prepared: Prepared::new(network, &atoms),
+            deadline,
+            settings,
+        }
     }
 
     /// Searches the query's whole box.
     pub(super) fn search(&self) -> Outcome {
-        let mut outcome = Outcome { found: Found::Nothing, regions: 0, proof: Proof::default() };
+        let mut outcome = Outcome {
+            found: Found::Nothing,
+            regions: 0,
+            proof: Proof::default(),
+        };
         outcome.proof.cells.push(Cell::default());
         let mut stack = vec![Node {
             region: self.query.region.clone(),
@@ -87,7 +104,10 @@ impl<'a> Problem<'a> {
             let batch = stack.split_off(stack.len().saturating_sub(ROUND));
             let roots: Vec<usize> = batch.iter().map(|node| node.cell).collect();
             let work = |worker: &mut Worker<'_>, node| worker.work(node);
-            let done: Vec<Done> = batch.into_par_iter().map_init(|| Worker::new(self), work).collect();
+            let done: Vec<Done> = batch
+                .into_par_iter()
+                .map_init(|| Worker::new(self), work)
+                .collect();
             outcome.regions += done.iter().map(|d| d.regions).sum::<u64>();
             for (task, root) in done.into_iter().zip(roots) {
                 match &task.found {
@@ -106,7 +126,10 @@ impl<'a> Problem<'a> {
 
     /// Where the atoms of each conjunction lie among all atoms.
     fn atoms_of(&self, conjunction: u32) -> Range<usize> {
-        let before: usize = self.query.unsafe_set[..conjunction as usize].iter().map(Vec::len).sum();
+        let before: usize = self.query.unsafe_set[..conjunction as usize]
+            .iter()
+            .map(Vec::len)
+            .sum();
         before..before + self.query.unsafe_set[conjunction as usize].len()
     }
 }
@@ -127,7 +150,8 @@ fn graft(task: Done, root: usize, proof: &mut Proof) -> Vec<Node> {
         }
     }
     let mut left = task.left;
-    left.iter_mut().for_each(|node| node.cell = moved(node.cell));
+    left.iter_mut()
+        .for_each(|node| node.cell = moved(node.cell));
     left
 }
 
@@ -171,7 +195,12 @@ impl<'a> Worker<'a> {
     /// Searches below a node until nothing is left or the task is used up.
     fn work(&mut self, mut node: Node) -> Done {
         node.cell = 0;
-        let mut done = Done { found: Found::Nothing, left: vec![node], cells: Vec::new(), regions: 0 };
+        let mut done = Done {
+            found: Found::Nothing,
+            left: vec![node],
+            cells: Vec::new(),
+            regions: 0,
+        };
         if self.problem.settings.record {
             done.cells.push(Cell::default());
         }
@@ -215,8 +244,22 @@ impl<'a> Worker<'a> {
     #[inline(always)]
     fn step(&mut self, mut node: Node, cell: &mut Cell) -> Step {
         let problem = self.problem;
-        let atoms: Vec<usize> = node.open.iter().flat_map(|&c| problem.atoms_of(c)).collect();
-        if self.workspace.bound(&problem.prepared, &node.region, &mut node.bounds, &node.phases, &atoms).is_err() {
+        let atoms: Vec<usize> = node
+            .open
+            .iter()
+            .flat_map(|&c| problem.atoms_of(c))
+            .collect();
+        if self
+            .workspace
+            .bound(
+                &problem.prepared,
+                &node.region,
+                &mut node.bounds,
+                &node.phases,
+                &atoms,
+            )
+            .is_err()
+        {
             cell.empty = true;
             return Step::Refuted;
         }
@@ -228,7 +271,9 @@ impl<'a> Worker<'a> {
         let mut first = 0;
         for &conjunction in &node.open {
             let count = problem.atoms_of(conjunction).len();
-            let mut bound = self.ascent.bound(&self.workspace, &node.region, first..first + count);
+            let mut bound = self
+                .ascent
+                .bound(&self.workspace, &node.region, first..first + count);
             first += count;
             let mut candidate = self.ascent.minimiser(node.region.lower.len()).to_vec();
             if bound <= 0.0 && self.workspace.symbols.count() == 0 {
@@ -239,7 +284,8 @@ impl<'a> Worker<'a> {
             }
             if bound > 0.0 {
                 if problem.settings.record {
-                    cell.refuted.push(self.ascent.refutation(&self.workspace, conjunction, bound));
+                    cell.refuted
+                        .push(self.ascent.refutation(&self.workspace, conjunction, bound));
                 }
                 continue;
             }
@@ -249,7 +295,8 @@ impl<'a> Worker<'a> {
             {
                 return Step::Witness(witness);
             }
-            self.ascent.blame(&self.workspace, &mut self.slack, &mut self.scores);
+            self.ascent
+                .blame(&self.workspace, &mut self.slack, &mut self.scores);
             open.push(conjunction);
         }
         if open.is_empty() {
@@ -261,7 +308,11 @@ impl<'a> Worker<'a> {
             Branching::Inputs => false,
             Branching::Phases => true,
         };
-        let phase = if by_phase { self.worst_phase(&node) } else { None };
+        let phase = if by_phase {
+            self.worst_phase(&node)
+        } else {
+            None
+        };
         match phase {
             Some(neuron) => Step::Split(Split::Phase { neuron }, split_phase(node, neuron)),
             None => match split_input(node, &self.scores) {
@@ -274,8 +325,11 @@ impl<'a> Worker<'a> {
     /// The unstable ReLU whose relaxation costs the most.
     fn worst_phase(&self, node: &Node) -> Option<u32> {
         let symbols = &self.workspace.symbols;
-        let free = |&s: &usize| symbols.lines(s).free && is_unstable(node.bounds[symbols.neuron(s)]);
-        let most = (0..symbols.count()).filter(free).max_by(|&a, &b| self.slack[a].total_cmp(&self.slack[b]))?;
+        let free =
+            |&s: &usize| symbols.lines(s).free && is_unstable(node.bounds[symbols.neuron(s)]);
+        let most = (0..symbols.count())
+            .filter(free)
+            .max_by(|&a, &b| self.slack[a].total_cmp(&self.slack[b]))?;
         u32::try_from(symbols.neuron(most)).ok()
     }
 }
@@ -288,7 +342,10 @@ fn split_input(node: Node, scores: &[f64]) -> Option<(Split, [Node; 2])> {
     let divisible = |&i: &usize| lower[i] < middle(i) && middle(i) < upper[i];
     let better = |&a: &usize, &b: &usize| {
         let width = |i: usize| upper[i] - lower[i];
-        scores[a].total_cmp(&scores[b]).then(width(a).total_cmp(&width(b))).then(b.cmp(&a))
+        scores[a]
+            .total_cmp(&scores[b])
+            .then(width(a).total_cmp(&width(b)))
+            .then(b.cmp(&a))
     };
     let input = (0..lower.len()).filter(divisible).max_by(better)?;
     let at = middle(input);
@@ -296,7 +353,13 @@ fn split_input(node: Node, scores: &[f64]) -> Option<(Split, [Node; 2])> {
     let mut above = node;
     below.region.upper[input] = at;
     above.region.lower[input] = at;
-    Some((Split::Input { input: u32::try_from(input).ok()?, at }, [above, below]))
+    Some((
+        Split::Input {
+            input: u32::try_from(input).ok()?,
+            at,
+        },
+        [above, below],
+    ))
 }
 
 /// Assumes the ReLU off, then on.

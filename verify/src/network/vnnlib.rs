@@ -50,10 +50,17 @@ pub fn read(text: &str) -> Result<Property, VnnlibError> {
         let Some(region) = region else { continue };
         match queries.iter_mut().find(|q| q.region == region) {
             Some(query) => query.unsafe_set.push(outputs),
-            None => queries.push(Query { region, unsafe_set: vec![outputs] }),
+            None => queries.push(Query {
+                region,
+                unsafe_set: vec![outputs],
+            }),
         }
     }
-    Ok(Property { inputs, outputs, queries })
+    Ok(Property {
+        inputs,
+        outputs,
+        queries,
+    })
 }
 
 /// One conjunction of the disjunctive normal form, as it grows.
@@ -66,7 +73,12 @@ struct Disjunct {
 impl Disjunct {
     /// How many numbers it holds.
     fn size(&self) -> usize {
-        2 * self.region.0.len() + self.outputs.iter().map(|h| h.coefficients.len()).sum::<usize>()
+        2 * self.region.0.len()
+            + self
+                .outputs
+                .iter()
+                .map(|h| h.coefficients.len())
+                .sum::<usize>()
     }
 }
 
@@ -77,9 +89,18 @@ struct Region(Vec<(f64, f64)>);
 impl Region {
     /// The box; `None` if it is empty.
     fn closed(self) -> Result<Option<InputBox>, VnnlibError> {
-        if let Some(i) = self.0.iter().position(|(lo, hi)| !lo.is_finite() || !hi.is_finite()) {
-            let what = format!("X_{i} is not bounded on both sides; assert (>= X_{i} …) and (<= X_{i} …)");
-            return Err(VnnlibError { line: 1, column: 1, what });
+        if let Some(i) = self
+            .0
+            .iter()
+            .position(|(lo, hi)| !lo.is_finite() || !hi.is_finite())
+        {
+            let what =
+                format!("X_{i} is not bounded on both sides; assert (>= X_{i} …) and (<= X_{i} …)");
+            return Err(VnnlibError {
+                line: 1,
+                column: 1,
+                what,
+            });
         }
         let (lower, upper): (Vec<_>, Vec<_>) = self.0.into_iter().unzip();
         let empty = lower.iter().zip(&upper).any(|(lo, hi)| lo > hi);
@@ -88,22 +109,36 @@ impl Region {
 }
 
 /// The disjunctive normal form.
-fn normalise(formula: &Formula, inputs: usize, outputs: usize) -> Result<Vec<Disjunct>, VnnlibError> {
+fn normalise(
+    formula: &Formula,
+    inputs: usize,
+    outputs: usize,
+) -> Result<Vec<Disjunct>, VnnlibError> {
     let all = Region(vec![(f64::NEG_INFINITY, f64::INFINITY); inputs]);
-    let start = vec![Disjunct { region: all, outputs: Vec::new() }];
+    let start = vec![Disjunct {
+        region: all,
+        outputs: Vec::new(),
+    }];
     conjoin(start, formula, outputs)
 }
 
 /// Each of `so_far` together with the formula.
-fn conjoin(so_far: Vec<Disjunct>, formula: &Formula, outputs: usize) -> Result<Vec<Disjunct>, VnnlibError> {
+fn conjoin(
+    so_far: Vec<Disjunct>,
+    formula: &Formula,
+    outputs: usize,
+) -> Result<Vec<Disjunct>, VnnlibError> {
     match formula {
-        Formula::And(parts) => parts.iter().try_fold(so_far, |all, part| conjoin(all, part, outputs)),
+        Formula::And(parts) => parts
+            .iter()
+            .try_fold(so_far, |all, part| conjoin(all, part, outputs)),
         Formula::Or(parts, place) => {
             let mut all = Vec::new();
             for part in parts {
                 all.extend(conjoin(so_far.clone(), part, outputs)?);
                 if all.iter().map(Disjunct::size).sum::<usize>() > MOST_NUMBERS {
-                    return Err(place.error("expands to too many conjunctions; split the property".to_owned()));
+                    return Err(place
+                        .error("expands to too many conjunctions; split the property".to_owned()));
                 }
             }
             Ok(all)
@@ -114,7 +149,12 @@ fn conjoin(so_far: Vec<Disjunct>, formula: &Formula, outputs: usize) -> Result<V
 
 /// The conjunction with one more constraint.
 fn add(mut disjunct: Disjunct, atom: &Atom, outputs: usize) -> Result<Disjunct, VnnlibError> {
-    let Atom { inputs: of_x, outputs: of_y, bound, place } = atom;
+    let Atom {
+        inputs: of_x,
+        outputs: of_y,
+        bound,
+        place,
+    } = atom;
     match (of_x.as_slice(), of_y.as_slice()) {
         (&[(index, c)], []) => {
             let Some((lo, hi)) = disjunct.region.0.get_mut(index) else {
@@ -135,13 +175,22 @@ fn add(mut disjunct: Disjunct, atom: &Atom, outputs: usize) -> Result<Disjunct, 
                 };
                 *slot = c;
             }
-            disjunct.outputs.push(Halfspace { coefficients, bound: *bound });
+            disjunct.outputs.push(Halfspace {
+                coefficients,
+                bound: *bound,
+            });
         }
         ([], []) => return Err(place.error("a comparison of constants".to_owned())),
         ([_, _, ..], []) => {
-            return Err(place.error("a constraint between several inputs; only boxes are supported".to_owned()));
+            return Err(place.error(
+                "a constraint between several inputs; only boxes are supported".to_owned(),
+            ));
         }
-        (_, _) => return Err(place.error("a constraint between inputs and outputs is not supported".to_owned())),
+        (_, _) => {
+            return Err(
+                place.error("a constraint between inputs and outputs is not supported".to_owned())
+            );
+        }
     }
     Ok(disjunct)
 }

@@ -24,15 +24,24 @@ struct Row {
 
 impl Row {
     fn unit(index: usize) -> Self {
-        Self { terms: vec![(index, 1.0)], bias: 0.0 }
+        Self {
+            terms: vec![(index, 1.0)],
+            bias: 0.0,
+        }
     }
 }
 
 impl Variable {
     /// The same elements in another shape or order: element i of the result is element `pick(i)`.
     pub(super) fn rearranged(&self, shape: Shape, pick: impl Fn(usize) -> usize) -> Self {
-        let rows = (0..shape.size()).map(|i| self.rows[pick(i)].clone()).collect();
-        Self { shape, rows, ..*self }
+        let rows = (0..shape.size())
+            .map(|i| self.rows[pick(i)].clone())
+            .collect();
+        Self {
+            shape,
+            rows,
+            ..*self
+        }
     }
 
     /// Elements taken from several variables of the same base: element i is element `pick(i).1` of
@@ -43,11 +52,24 @@ impl Variable {
         pick: impl Fn(usize) -> (usize, usize),
     ) -> Result<Self, String> {
         let base = parts[0].base;
-        if parts.iter().any(|part| part.base != base || part.uncertainty != parts[0].uncertainty) {
-            return Err("joins values of different depths; only chains of layers are supported".to_owned());
+        if parts
+            .iter()
+            .any(|part| part.base != base || part.uncertainty != parts[0].uncertainty)
+        {
+            return Err(
+                "joins values of different depths; only chains of layers are supported".to_owned(),
+            );
         }
-        let rows = (0..shape.size()).map(pick).map(|(part, i)| parts[part].rows[i].clone()).collect();
-        Ok(Self { shape, base, rows, uncertainty: parts[0].uncertainty })
+        let rows = (0..shape.size())
+            .map(pick)
+            .map(|(part, i)| parts[part].rows[i].clone())
+            .collect();
+        Ok(Self {
+            shape,
+            base,
+            rows,
+            uncertainty: parts[0].uncertainty,
+        })
     }
 
     fn entries(&self) -> usize {
@@ -63,12 +85,20 @@ pub(super) struct Builder {
 
 impl Builder {
     pub(super) fn new(inputs: usize) -> Self {
-        Self { inputs, layers: Vec::new() }
+        Self {
+            inputs,
+            layers: Vec::new(),
+        }
     }
 
     /// A graph input, as the given range of the network's inputs.
     pub(super) fn input(&self, range: Range<usize>, shape: Shape) -> Variable {
-        Variable { shape, base: 0, rows: range.map(Row::unit).collect(), uncertainty: 0.0 }
+        Variable {
+            shape,
+            base: 0,
+            rows: range.map(Row::unit).collect(),
+            uncertainty: 0.0,
+        }
     }
 
     /// The affine map of a value: element i of the result is Σ (c·element j) + bias over the terms
@@ -81,13 +111,29 @@ impl Builder {
         row: impl Fn(usize) -> (Vec<(usize, f64)>, f64),
     ) -> Result<Variable, String> {
         let maps: Vec<_> = (0..shape.size()).map(row).collect();
-        let merged: Option<Vec<Row>> = maps.iter().map(|(terms, bias)| merge(value, terms, *bias)).collect();
+        let merged: Option<Vec<Row>> = maps
+            .iter()
+            .map(|(terms, bias)| merge(value, terms, *bias))
+            .collect();
         let rows = match merged {
-            Some(rows) => return bounded(Variable { shape, rows, ..*value }),
-            None => maps.into_iter().map(|(terms, bias)| Row { terms, bias }).collect(),
+            Some(rows) => {
+                return bounded(Variable {
+                    shape,
+                    rows,
+                    ..*value
+                });
+            }
+            None => maps
+                .into_iter()
+                .map(|(terms, bias)| Row { terms, bias })
+                .collect(),
         };
         let base = self.activate(value, Activation::Identity)?;
-        bounded(Variable { shape, rows, ..base })
+        bounded(Variable {
+            shape,
+            rows,
+            ..base
+        })
     }
 
     /// Every element divided by a constant: exact where the reciprocal is, otherwise the
@@ -108,18 +154,31 @@ impl Builder {
         }
         let value = self.activate(value, Activation::Identity)?;
         let divided = self.map(&value, shape, reciprocal)?;
-        let uncertain = Variable { uncertainty: f64::EPSILON, ..divided };
+        let uncertain = Variable {
+            uncertainty: f64::EPSILON,
+            ..divided
+        };
         self.activate(&uncertain, Activation::Identity)
     }
 
     /// Ends a layer: the value, then the activation.
-    pub(super) fn activate(&mut self, value: &Variable, activation: Activation) -> Result<Variable, String> {
+    pub(super) fn activate(
+        &mut self,
+        value: &Variable,
+        activation: Activation,
+    ) -> Result<Variable, String> {
         if value.base != self.layers.len() {
-            return Err("takes a value that a later layer has left behind; only chains are supported".to_owned());
+            return Err(
+                "takes a value that a later layer has left behind; only chains are supported"
+                    .to_owned(),
+            );
         }
         let width = self.layers.last().map_or(self.inputs, Layer::outputs);
         let outputs = value.rows.len();
-        if outputs.checked_mul(width).is_none_or(|entries| entries > MOST_ELEMENTS) {
+        if outputs
+            .checked_mul(width)
+            .is_none_or(|entries| entries > MOST_ELEMENTS)
+        {
             return Err(format!("a layer of {width} by {outputs} is too large"));
         }
         let mut weights = Matrix::zeros(outputs, width);
@@ -129,26 +188,43 @@ impl Builder {
             }
         }
         let bias = value.rows.iter().map(|row| row.bias).collect();
-        self.layers.push(Layer { weights, bias, activation, uncertainty: value.uncertainty });
+        self.layers.push(Layer {
+            weights,
+            bias,
+            activation,
+            uncertainty: value.uncertainty,
+        });
         let rows = (0..outputs).map(Row::unit).collect();
-        Ok(Variable { shape: value.shape.clone(), base: self.layers.len(), rows, uncertainty: 0.0 })
+        Ok(Variable {
+            shape: value.shape.clone(),
+            base: self.layers.len(),
+            rows,
+            uncertainty: 0.0,
+        })
     }
 
     /// The network whose output is the value.
-    pub(super) fn finish(mut self, value: Variable) -> Result<Network, String> {
+    pub(super) fn finish(mut self, value: &Variable) -> Result<Network, String> {
         let plain = |(i, row): (usize, &Row)| row.bias == 0.0 && row.terms.as_slice() == [(i, 1.0)];
         let is_last_layer = value.base == self.layers.len()
-            && self.layers.last().is_some_and(|last| last.outputs() == value.rows.len())
+            && self
+                .layers
+                .last()
+                .is_some_and(|last| last.outputs() == value.rows.len())
             && value.rows.iter().enumerate().all(plain);
         if !is_last_layer {
-            self.activate(&value, Activation::Identity)?;
+            self.activate(value, Activation::Identity)?;
         }
         Network::new(self.inputs, self.layers).map_err(|e| e.to_string())
     }
 }
 
 fn bounded(value: Variable) -> Result<Variable, String> {
-    if value.entries() > MOST_ELEMENTS { Err("gives too large a map".to_owned()) } else { Ok(value) }
+    if value.entries() > MOST_ELEMENTS {
+        Err("gives too large a map".to_owned())
+    } else {
+        Ok(value)
+    }
 }
 
 /// The row Σ c·(row j of the value) + bias, if no rounding is needed to write it down.
@@ -156,7 +232,10 @@ fn merge(value: &Variable, terms: &[(usize, f64)], bias: f64) -> Option<Row> {
     if value.uncertainty != 0.0 {
         return None;
     }
-    let mut merged = Row { terms: Vec::with_capacity(terms.len()), bias };
+    let mut merged = Row {
+        terms: Vec::with_capacity(terms.len()),
+        bias,
+    };
     let mut sorted = true;
     for &(j, c) in terms {
         let row = &value.rows[j];

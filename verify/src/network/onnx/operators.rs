@@ -47,27 +47,43 @@ struct Arguments<'a> {
 
 impl<'a> Arguments<'a> {
     fn value(&self, index: usize) -> Result<&'a Value, String> {
-        let name = self.node.input.get(index).ok_or_else(|| format!("has no input {index}"))?;
-        self.values.get(name.as_str()).ok_or_else(|| format!("takes {name:?}, which no earlier node gives"))
+        let name = self
+            .node
+            .input
+            .get(index)
+            .ok_or_else(|| format!("has no input {index}"))?;
+        self.values
+            .get(name.as_str())
+            .ok_or_else(|| format!("takes {name:?}, which no earlier node gives"))
     }
 
     fn given(&self, index: usize) -> bool {
-        self.node.input.get(index).is_some_and(|name| !name.is_empty())
+        self.node
+            .input
+            .get(index)
+            .is_some_and(|name| !name.is_empty())
     }
 
     fn integers(&self, index: usize) -> Result<&'a [i64], String> {
         match self.value(index)? {
-            Value::Constant(Constant { data: Data::Integer(values), .. }) => Ok(values),
+            Value::Constant(Constant {
+                data: Data::Integer(values),
+                ..
+            }) => Ok(values),
             _ => Err(format!("input {index} must be a constant of integers")),
         }
     }
 
     fn attribute(&self, name: &str) -> Option<&'a Attribute> {
-        self.node.attribute.iter().find(|attribute| attribute.name == name)
+        self.node
+            .attribute
+            .iter()
+            .find(|attribute| attribute.name == name)
     }
 
     fn integer(&self, name: &str, otherwise: i64) -> i64 {
-        self.attribute(name).map_or(otherwise, |attribute| attribute.i)
+        self.attribute(name)
+            .map_or(otherwise, |attribute| attribute.i)
     }
 
     /// An axis attribute, counted from the end where negative; at most `most`.
@@ -77,14 +93,29 @@ impl<'a> Arguments<'a> {
 }
 
 fn axis(axis: i64, rank: usize, most: usize) -> Result<usize, String> {
-    let counted = if axis < 0 { usize::try_from(-axis).ok().and_then(|a| rank.checked_sub(a)) } else { usize::try_from(axis).ok() };
-    counted.filter(|&a| a <= most).ok_or_else(|| format!("axis {axis} of a tensor of rank {rank}"))
+    let counted = if axis < 0 {
+        usize::try_from(-axis)
+            .ok()
+            .and_then(|a| rank.checked_sub(a))
+    } else {
+        usize::try_from(axis).ok()
+    };
+    counted
+        .filter(|&a| a <= most)
+        .ok_or_else(|| format!("axis {axis} of a tensor of rank {rank}"))
 }
 
 /// The value that a node gives.
-pub(super) fn apply(node: &Node, values: &HashMap<&str, Value>, builder: &mut Builder) -> Result<Value, String> {
+pub(super) fn apply(
+    node: &Node,
+    values: &HashMap<&str, Value>,
+    builder: &mut Builder,
+) -> Result<Value, String> {
     if !matches!(node.domain.as_str(), "" | "ai.onnx") {
-        return Err(format!("operators of domain {:?} are not supported", node.domain));
+        return Err(format!(
+            "operators of domain {:?} are not supported",
+            node.domain
+        ));
     }
     let arguments = Arguments { node, values };
     match node.op_type.as_str() {
@@ -110,14 +141,19 @@ pub(super) fn apply(node: &Node, values: &HashMap<&str, Value>, builder: &mut Bu
 
 fn constant(arguments: &Arguments<'_>) -> Result<Value, String> {
     if let Some(tensor) = arguments.attribute("value").and_then(|a| a.t.as_ref()) {
-        return tensor::read(tensor).map(Value::Constant).map_err(|e| e.to_string());
+        return tensor::read(tensor)
+            .map(Value::Constant)
+            .map_err(|e| e.to_string());
     }
     let vector = |length: usize| Shape::from_dims(vec![length]).ok_or("is too large");
     let scalar = || Shape::from_dims(Vec::new()).ok_or("is too large");
     let (shape, data) = if let Some(a) = arguments.attribute("value_float") {
         (scalar()?, Data::Real(vec![f64::from(a.f)]))
     } else if let Some(a) = arguments.attribute("value_floats") {
-        (vector(a.floats.len())?, Data::Real(a.floats.iter().copied().map(f64::from).collect()))
+        (
+            vector(a.floats.len())?,
+            Data::Real(a.floats.iter().copied().map(f64::from).collect()),
+        )
     } else if let Some(a) = arguments.attribute("value_int") {
         (scalar()?, Data::Integer(vec![a.i]))
     } else if let Some(a) = arguments.attribute("value_ints") {
@@ -131,7 +167,11 @@ fn constant(arguments: &Arguments<'_>) -> Result<Value, String> {
     Ok(Value::Constant(Constant { shape, data }))
 }
 
-fn activation(arguments: &Arguments<'_>, builder: &mut Builder, activation: Activation) -> Result<Value, String> {
+fn activation(
+    arguments: &Arguments<'_>,
+    builder: &mut Builder,
+    activation: Activation,
+) -> Result<Value, String> {
     match arguments.value(0)? {
         Value::Variable(variable) => builder.activate(variable, activation).map(Value::Variable),
         Value::Constant(_) => Err("of a constant is not supported".to_owned()),
@@ -166,7 +206,10 @@ fn reshape(arguments: &Arguments<'_>) -> Result<Value, String> {
         });
     }
     if let Some(free) = wanted.iter().position(|&d| d == -1) {
-        let others = dims.iter().try_fold(1_usize, |product, &d| product.checked_mul(d)).unwrap_or(0);
+        let others = dims
+            .iter()
+            .try_fold(1_usize, |product, &d| product.checked_mul(d))
+            .unwrap_or(0);
         dims[free] = value.shape().size().checked_div(others).unwrap_or(0);
     }
     reshaped(value, dims)
@@ -185,19 +228,37 @@ fn squeeze(arguments: &Arguments<'_>) -> Result<Value, String> {
     let value = arguments.value(0)?;
     let dims = value.shape().dims();
     let chosen = match axes(arguments)? {
-        Some(axes) => axes.iter().map(|&a| axis(a, dims.len(), dims.len())).collect::<Result<Vec<_>, _>>()?,
+        Some(axes) => axes
+            .iter()
+            .map(|&a| axis(a, dims.len(), dims.len()))
+            .collect::<Result<Vec<_>, _>>()?,
         None => (0..dims.len()).filter(|&i| dims[i] == 1).collect(),
     };
-    reshaped(value, (0..dims.len()).filter(|i| !chosen.contains(i)).map(|i| dims[i]).collect())
+    reshaped(
+        value,
+        (0..dims.len())
+            .filter(|i| !chosen.contains(i))
+            .map(|i| dims[i])
+            .collect(),
+    )
 }
 
 fn unsqueeze(arguments: &Arguments<'_>) -> Result<Value, String> {
     let value = arguments.value(0)?;
     let added = axes(arguments)?.ok_or("has no axes")?;
     let rank = value.shape().dims().len() + added.len();
-    let added = added.iter().map(|&a| axis(a, rank, rank)).collect::<Result<Vec<_>, _>>()?;
+    let added = added
+        .iter()
+        .map(|&a| axis(a, rank, rank))
+        .collect::<Result<Vec<_>, _>>()?;
     let mut old = value.shape().dims().iter().copied();
-    let dims = (0..rank).map(|i| if added.contains(&i) { 1 } else { old.next().unwrap_or(1) });
+    let dims = (0..rank).map(|i| {
+        if added.contains(&i) {
+            1
+        } else {
+            old.next().unwrap_or(1)
+        }
+    });
     reshaped(value, dims.collect())
 }
 
@@ -205,7 +266,11 @@ fn transpose(arguments: &Arguments<'_>) -> Result<Value, String> {
     let value = arguments.value(0)?;
     let dims = value.shape().dims();
     let order = match arguments.attribute("perm") {
-        Some(attribute) => attribute.ints.iter().map(|&p| usize::try_from(p).unwrap_or(usize::MAX)).collect(),
+        Some(attribute) => attribute
+            .ints
+            .iter()
+            .map(|&p| usize::try_from(p).unwrap_or(usize::MAX))
+            .collect(),
         None => (0..dims.len()).rev().collect::<Vec<_>>(),
     };
     let mut sorted = order.clone();
@@ -213,7 +278,9 @@ fn transpose(arguments: &Arguments<'_>) -> Result<Value, String> {
     if sorted != (0..dims.len()).collect::<Vec<_>>() {
         return Err(format!("perm {order:?} of a tensor of rank {}", dims.len()));
     }
-    let strides: Vec<usize> = (0..dims.len()).map(|i| dims[i + 1..].iter().product()).collect();
+    let strides: Vec<usize> = (0..dims.len())
+        .map(|i| dims[i + 1..].iter().product())
+        .collect();
     let new: Vec<usize> = order.iter().map(|&p| dims[p]).collect();
     let shape = Shape::from_dims(new.clone()).ok_or("is too large")?;
     Ok(value.rearranged(shape, |mut flat| {
@@ -255,7 +322,10 @@ fn concat(arguments: &Arguments<'_>) -> Result<Value, String> {
             within -= parts[part].shape.dims()[along] * inner;
             part += 1;
         }
-        (part, outer * parts[part].shape.dims()[along] * inner + within)
+        (
+            part,
+            outer * parts[part].shape.dims()[along] * inner + within,
+        )
     });
     joined.map(Value::Variable)
 }
@@ -272,11 +342,20 @@ fn mixed<'a>(arguments: &Arguments<'a>) -> Result<Mixed<'a>, String> {
     let (variable, constant, variable_first) = match (arguments.value(0)?, arguments.value(1)?) {
         (Value::Variable(variable), Value::Constant(constant)) => (variable, constant, true),
         (Value::Constant(constant), Value::Variable(variable)) => (variable, constant, false),
-        (Value::Variable(_), Value::Variable(_)) => return Err("of two values that depend on the input is not supported".to_owned()),
-        (Value::Constant(_), Value::Constant(_)) => return Err("of two constants is not supported".to_owned()),
+        (Value::Variable(_), Value::Variable(_)) => {
+            return Err("of two values that depend on the input is not supported".to_owned());
+        }
+        (Value::Constant(_), Value::Constant(_)) => {
+            return Err("of two constants is not supported".to_owned());
+        }
     };
     match &constant.data {
-        Data::Real(values) => Ok(Mixed { variable, shape: &constant.shape, values, variable_first }),
+        Data::Real(values) => Ok(Mixed {
+            variable,
+            shape: &constant.shape,
+            values,
+            variable_first,
+        }),
         Data::Integer(_) => Err("with integers is not supported".to_owned()),
     }
 }
@@ -284,30 +363,48 @@ fn mixed<'a>(arguments: &Arguments<'a>) -> Result<Mixed<'a>, String> {
 impl Mixed<'_> {
     fn broadcast(&self) -> Result<Shape, String> {
         let (a, b) = (&self.variable.shape, self.shape);
-        a.broadcast(b).ok_or_else(|| format!("shapes {:?} and {:?} do not fit", a.dims(), b.dims()))
+        a.broadcast(b)
+            .ok_or_else(|| format!("shapes {:?} and {:?} do not fit", a.dims(), b.dims()))
     }
 
     /// For an element of the broadcast result: the index of the variable's element, and the constant.
     fn pair(&self, whole: &Shape, flat: usize) -> (usize, f64) {
-        (self.variable.shape.index_in(whole, flat), self.values[self.shape.index_in(whole, flat)])
+        (
+            self.variable.shape.index_in(whole, flat),
+            self.values[self.shape.index_in(whole, flat)],
+        )
     }
 }
 
-fn sum(arguments: &Arguments<'_>, builder: &mut Builder, sign_of_second: f64) -> Result<Value, String> {
+fn sum(
+    arguments: &Arguments<'_>,
+    builder: &mut Builder,
+    sign_of_second: f64,
+) -> Result<Value, String> {
     let m = mixed(arguments)?;
     let whole = m.broadcast()?;
-    let (of_variable, of_constant) = if m.variable_first { (1.0, sign_of_second) } else { (sign_of_second, 1.0) };
+    let (of_variable, of_constant) = if m.variable_first {
+        (1.0, sign_of_second)
+    } else {
+        (sign_of_second, 1.0)
+    };
     let row = |flat| {
         let (index, constant) = m.pair(&whole, flat);
         (vec![(index, of_variable)], of_constant * constant)
     };
-    builder.map(m.variable, whole.clone(), row).map(Value::Variable)
+    builder
+        .map(m.variable, whole.clone(), row)
+        .map(Value::Variable)
 }
 
 fn multiply(arguments: &Arguments<'_>, builder: &mut Builder) -> Result<Value, String> {
     let m = mixed(arguments)?;
     let whole = m.broadcast()?;
-    builder.map(m.variable, whole.clone(), |flat| (vec![m.pair(&whole, flat)], 0.0)).map(Value::Variable)
+    builder
+        .map(m.variable, whole.clone(), |flat| {
+            (vec![m.pair(&whole, flat)], 0.0)
+        })
+        .map(Value::Variable)
 }
 
 fn divide(arguments: &Arguments<'_>, builder: &mut Builder) -> Result<Value, String> {
@@ -316,7 +413,9 @@ fn divide(arguments: &Arguments<'_>, builder: &mut Builder) -> Result<Value, Str
         return Err("only by constants other than 0".to_owned());
     }
     let whole = m.broadcast()?;
-    builder.divide(m.variable, whole.clone(), |flat| m.pair(&whole, flat)).map(Value::Variable)
+    builder
+        .divide(m.variable, whole.clone(), |flat| m.pair(&whole, flat))
+        .map(Value::Variable)
 }
 
 /// The last two dimensions of a factor, a vector standing as a row (on the left) or a column.
@@ -332,18 +431,32 @@ fn factor(shape: &Shape, left: bool) -> Result<(usize, usize), String> {
 
 fn matmul(arguments: &Arguments<'_>, builder: &mut Builder) -> Result<Value, String> {
     let m = mixed(arguments)?;
-    let (a, b) = if m.variable_first { (&m.variable.shape, m.shape) } else { (m.shape, &m.variable.shape) };
+    let (a, b) = if m.variable_first {
+        (&m.variable.shape, m.shape)
+    } else {
+        (m.shape, &m.variable.shape)
+    };
     let ((rows, inner), (inner_b, cols)) = (factor(a, true)?, factor(b, false)?);
     if inner != inner_b {
-        return Err(format!("shapes {:?} and {:?} do not fit", a.dims(), b.dims()));
+        return Err(format!(
+            "shapes {:?} and {:?} do not fit",
+            a.dims(),
+            b.dims()
+        ));
     }
     let mut dims = a.dims()[..a.dims().len().saturating_sub(1)].to_vec();
     if b.dims().len() > 1 {
         dims.push(cols);
     }
-    let shape = Shape::from_dims(dims).filter(|s| s.size() == rows * cols).ok_or("gives a shape that is not supported")?;
+    let shape = Shape::from_dims(dims)
+        .filter(|s| s.size() == rows * cols)
+        .ok_or("gives a shape that is not supported")?;
     let product = Product::new((inner, 1), (cols, 1), inner, &shape)?;
-    builder.map(m.variable, shape, |flat| (product.terms(&m, flat / cols, flat % cols), 0.0)).map(Value::Variable)
+    builder
+        .map(m.variable, shape, |flat| {
+            (product.terms(&m, flat / cols, flat % cols), 0.0)
+        })
+        .map(Value::Variable)
 }
 
 /// How to walk the two factors of a matrix product: strides of (row, inner) of the left and
@@ -355,17 +468,36 @@ struct Product {
 }
 
 impl Product {
-    fn new(rows_step: (usize, usize), cols_step: (usize, usize), inner: usize, whole: &Shape) -> Result<Self, String> {
+    fn new(
+        rows_step: (usize, usize),
+        cols_step: (usize, usize),
+        inner: usize,
+        whole: &Shape,
+    ) -> Result<Self, String> {
         let terms = whole.size().checked_mul(inner);
         let small = terms.is_some_and(|terms| terms <= tensor::MOST_ELEMENTS);
-        if small { Ok(Self { rows_step, cols_step, inner }) } else { Err("is too large".to_owned()) }
+        if small {
+            Ok(Self {
+                rows_step,
+                cols_step,
+                inner,
+            })
+        } else {
+            Err("is too large".to_owned())
+        }
     }
 
     /// The terms of one element: indices into the variable factor and coefficients.
     fn terms(&self, m: &Mixed<'_>, row: usize, col: usize) -> Vec<(usize, f64)> {
         let left = |k: usize| row * self.rows_step.0 + k * self.rows_step.1;
         let right = |k: usize| k * self.cols_step.0 + col * self.cols_step.1;
-        let term = |k| if m.variable_first { (left(k), m.values[right(k)]) } else { (right(k), m.values[left(k)]) };
+        let term = |k| {
+            if m.variable_first {
+                (left(k), m.values[right(k)])
+            } else {
+                (right(k), m.values[left(k)])
+            }
+        };
         (0..self.inner).map(term).collect()
     }
 }
@@ -375,17 +507,37 @@ fn gemm(arguments: &Arguments<'_>, builder: &mut Builder) -> Result<Value, Strin
     let flag = |name| arguments.integer(name, 0) != 0;
     let real = |name| arguments.attribute(name).map_or(1.0, |a| f64::from(a.f));
     let (alpha, beta) = (real("alpha"), real("beta"));
-    let (a, b) = if m.variable_first { (&m.variable.shape, m.shape) } else { (m.shape, &m.variable.shape) };
+    let (a, b) = if m.variable_first {
+        (&m.variable.shape, m.shape)
+    } else {
+        (m.shape, &m.variable.shape)
+    };
     let (&[a0, a1], &[b0, b1]) = (a.dims(), b.dims()) else {
-        return Err(format!("shapes {:?} and {:?} are not matrices", a.dims(), b.dims()));
+        return Err(format!(
+            "shapes {:?} and {:?} are not matrices",
+            a.dims(),
+            b.dims()
+        ));
     };
     if !alpha.is_finite() || !beta.is_finite() {
         return Err("alpha or beta is not finite".to_owned());
     }
-    let (rows, inner, rows_step) = if flag("transA") { (a1, a0, (1, a1)) } else { (a0, a1, (a1, 1)) };
-    let (inner_b, cols, cols_step) = if flag("transB") { (b1, b0, (1, b1)) } else { (b0, b1, (b1, 1)) };
+    let (rows, inner, rows_step) = if flag("transA") {
+        (a1, a0, (1, a1))
+    } else {
+        (a0, a1, (a1, 1))
+    };
+    let (inner_b, cols, cols_step) = if flag("transB") {
+        (b1, b0, (1, b1))
+    } else {
+        (b0, b1, (b1, 1))
+    };
     if inner != inner_b {
-        return Err(format!("shapes {:?} and {:?} do not fit", a.dims(), b.dims()));
+        return Err(format!(
+            "shapes {:?} and {:?} do not fit",
+            a.dims(),
+            b.dims()
+        ));
     }
     let shape = Shape::from_dims(vec![rows, cols]).ok_or("is too large")?;
     let bias = bias(arguments, &shape)?;
@@ -399,10 +551,16 @@ fn gemm(arguments: &Arguments<'_>, builder: &mut Builder) -> Result<Value, Strin
     let unbiased = |flat: usize| (product.terms(&m, flat / cols, flat % cols), 0.0);
     let value = builder.map(m.variable, shape.clone(), unbiased)?;
     let value = scaled(alpha, &value, builder)?;
-    if beta != 1.0 && !bias.iter().all(|&c| crate::network::rounding::exact_product(beta, c).is_some()) {
+    if beta != 1.0
+        && !bias
+            .iter()
+            .all(|&c| crate::network::rounding::exact_product(beta, c).is_some())
+    {
         return Err(format!("beta {beta} is not supported"));
     }
-    builder.map(&value, shape, |i| (vec![(i, 1.0)], beta * bias[i])).map(Value::Variable)
+    builder
+        .map(&value, shape, |i| (vec![(i, 1.0)], beta * bias[i]))
+        .map(Value::Variable)
 }
 
 /// Gemm's third input, broadcast to the result's shape.
@@ -411,11 +569,12 @@ fn bias(arguments: &Arguments<'_>, whole: &Shape) -> Result<Vec<f64>, String> {
         return Ok(vec![0.0; whole.size()]);
     }
     match arguments.value(2)? {
-        Value::Constant(Constant { shape, data: Data::Real(values) })
-            if shape.broadcast(whole).as_ref() == Some(whole) =>
-        {
-            Ok((0..whole.size()).map(|i| values[shape.index_in(whole, i)]).collect())
-        }
+        Value::Constant(Constant {
+            shape,
+            data: Data::Real(values),
+        }) if shape.broadcast(whole).as_ref() == Some(whole) => Ok((0..whole.size())
+            .map(|i| values[shape.index_in(whole, i)])
+            .collect()),
         _ => Err("its third input must be a real constant that fits the result".to_owned()),
     }
 }

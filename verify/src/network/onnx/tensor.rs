@@ -12,13 +12,18 @@ pub(super) struct Shape(Vec<usize>);
 impl Shape {
     /// A shape, unless a dimension is negative or the size too large.
     pub(super) fn new(dims: &[i64]) -> Option<Self> {
-        let dims: Vec<usize> = dims.iter().map(|&d| usize::try_from(d).ok()).collect::<Option<_>>()?;
+        let dims: Vec<usize> = dims
+            .iter()
+            .map(|&d| usize::try_from(d).ok())
+            .collect::<Option<_>>()?;
         Self::from_dims(dims)
     }
 
     /// A shape, unless its size is too large.
     pub(super) fn from_dims(dims: Vec<usize>) -> Option<Self> {
-        let size = dims.iter().try_fold(1_usize, |size, &d| size.checked_mul(d))?;
+        let size = dims
+            .iter()
+            .try_fold(1_usize, |size, &d| size.checked_mul(d))?;
         (size <= MOST_ELEMENTS).then_some(Self(dims))
     }
 
@@ -33,7 +38,10 @@ impl Shape {
     /// The shape of `self` broadcast against `other` (numpy's rule), if they fit.
     pub(super) fn broadcast(&self, other: &Self) -> Option<Self> {
         let rank = self.0.len().max(other.0.len());
-        let dim = |shape: &Self, axis: usize| axis.checked_sub(rank - shape.0.len()).map_or(1, |axis| shape.0[axis]);
+        let dim = |shape: &Self, axis: usize| {
+            axis.checked_sub(rank - shape.0.len())
+                .map_or(1, |axis| shape.0[axis])
+        };
         let dims = (0..rank).map(|axis| match (dim(self, axis), dim(other, axis)) {
             (a, b) if a == b => Some(a),
             (1, n) | (n, 1) => Some(n),
@@ -76,27 +84,40 @@ const DOUBLE: i32 = 11;
 
 /// A tensor's shape and values.
 pub(super) fn read(tensor: &proto::Tensor) -> Result<Constant, OnnxError> {
-    let fault = |what: String| OnnxError::Tensor { name: tensor.name.clone(), what };
+    let fault = |what: String| OnnxError::Tensor {
+        name: tensor.name.clone(),
+        what,
+    };
     if tensor.data_location != 0 {
         return Err(fault("its data lie outside the file".to_owned()));
     }
-    let shape = Shape::new(&tensor.dims).ok_or_else(|| fault(format!("shape {:?}", tensor.dims)))?;
+    let shape =
+        Shape::new(&tensor.dims).ok_or_else(|| fault(format!("shape {:?}", tensor.dims)))?;
     let raw = !tensor.raw_data.is_empty();
     let data = match tensor.data_type {
-        FLOAT if raw => Data::Real(words(&tensor.raw_data, |b| f64::from(f32::from_le_bytes(b)))),
+        FLOAT if raw => Data::Real(words(&tensor.raw_data, |b| {
+            f64::from(f32::from_le_bytes(b))
+        })),
         FLOAT => Data::Real(tensor.float_data.iter().copied().map(f64::from).collect()),
         DOUBLE if raw => Data::Real(words(&tensor.raw_data, f64::from_le_bytes)),
         DOUBLE => Data::Real(tensor.double_data.clone()),
         INT64 if raw => Data::Integer(words(&tensor.raw_data, i64::from_le_bytes)),
         INT64 => Data::Integer(tensor.int64_data.clone()),
-        other => return Err(fault(format!("element type {other}; supported are float, double and int64"))),
+        other => {
+            return Err(fault(format!(
+                "element type {other}; supported are float, double and int64"
+            )));
+        }
     };
     let (count, finite) = match &data {
         Data::Real(values) => (values.len(), values.iter().all(|v| v.is_finite())),
         Data::Integer(values) => (values.len(), true),
     };
     if count != shape.size() {
-        return Err(fault(format!("{count} values for shape {:?}", shape.dims())));
+        return Err(fault(format!(
+            "{count} values for shape {:?}",
+            shape.dims()
+        )));
     }
     if !finite {
         return Err(fault("holds a number that is not finite".to_owned()));
@@ -105,5 +126,10 @@ pub(super) fn read(tensor: &proto::Tensor) -> Result<Constant, OnnxError> {
 }
 
 fn words<const N: usize, T>(bytes: &[u8], read: impl Fn([u8; N]) -> T) -> Vec<T> {
-    bytes.as_chunks::<N>().0.iter().map(|chunk| read(*chunk)).collect()
+    bytes
+        .as_chunks::<N>()
+        .0
+        .iter()
+        .map(|chunk| read(*chunk))
+        .collect()
 }

@@ -1,25 +1,54 @@
-use super::proto::{Attribute, Dimension, Graph, Model, Node, Shape as ShapeProto, Tensor, TensorType, Type, ValueInfo};
+use super::proto::{
+    Attribute, Dimension, Graph, Model, Node, Shape as ShapeProto, Tensor, TensorType, Type,
+    ValueInfo,
+};
 use super::*;
 use proptest::prelude::*;
 
 fn tensor(name: &str, dims: &[i64], values: &[f32]) -> Tensor {
-    Tensor { name: name.into(), dims: dims.to_vec(), data_type: 1, float_data: values.to_vec(), ..Tensor::default() }
+    Tensor {
+        name: name.into(),
+        dims: dims.to_vec(),
+        data_type: 1,
+        float_data: values.to_vec(),
+        ..Tensor::default()
+    }
 }
 
 fn raw(name: &str, dims: &[i64], values: &[f64]) -> Tensor {
     let raw_data = values.iter().flat_map(|v| v.to_le_bytes()).collect();
-    Tensor { name: name.into(), dims: dims.to_vec(), data_type: 11, raw_data, ..Tensor::default() }
+    Tensor {
+        name: name.into(),
+        dims: dims.to_vec(),
+        data_type: 11,
+        raw_data,
+        ..Tensor::default()
+    }
 }
 
 fn integers(name: &str, values: &[i64]) -> Tensor {
     let dims = vec![values.len() as i64];
-    Tensor { name: name.into(), dims, data_type: 7, int64_data: values.to_vec(), ..Tensor::default() }
+    Tensor {
+        name: name.into(),
+        dims,
+        data_type: 7,
+        int64_data: values.to_vec(),
+        ..Tensor::default()
+    }
 }
 
 fn value(name: &str, dims: &[i64]) -> ValueInfo {
-    let dim = dims.iter().map(|&dim_value| Dimension { dim_value }).collect();
-    let tensor_type = Some(TensorType { shape: Some(ShapeProto { dim }) });
-    ValueInfo { name: name.into(), r#type: Some(Type { tensor_type }) }
+    let dim = dims
+        .iter()
+        .map(|&dim_value| Dimension { dim_value })
+        .collect();
+    let tensor_type = Some(TensorType {
+        shape: Some(ShapeProto { dim }),
+    });
+    ValueInfo {
+        name: name.into(),
+        r#type: Some(Type { tensor_type }),
+    }
 }
 
 fn node(op: &str, input: &[&str], output: &str, attribute: Vec<Attribute>) -> Node {
@@ -34,12 +63,24 @@ fn node(op: &str, input: &[&str], output: &str, attribute: Vec<Attribute>) -> No
 }
 
 fn integer(name: &str, i: i64) -> Attribute {
-    Attribute { name: name.into(), i, ..Attribute::default() }
+    Attribute {
+        name: name.into(),
+        i,
+        ..Attribute::default()
+    }
 }
 
 fn model(input: Vec<ValueInfo>, initializer: Vec<Tensor>, node: Vec<Node>) -> Vec<u8> {
     let output = vec![value("y", &[])];
-    Model { graph: Some(Graph { node, initializer, input, output }) }.encode_to_vec()
+    Model {
+        graph: Some(Graph {
+            node,
+            initializer,
+            input,
+            output,
+        }),
+    }
+    .encode_to_vec()
 }
 
 /// Reads the model and runs it; the error bounds must be honest and tiny.
@@ -48,30 +89,57 @@ fn run(bytes: &[u8], x: &[f64], expected: &[f64]) -> Network {
     let y = network.run(x);
     assert_eq!(y.values.len(), expected.len());
     for ((y, e), expected) in y.values.iter().zip(&y.errors).zip(expected) {
-        assert!((y - expected).abs() <= e + 1e-12 && *e < 1e-9, "{y} ± {e} for {expected}");
+        assert!(
+            (y - expected).abs() <= e + 1e-12 && *e < 1e-9,
+            "{y} ± {e} for {expected}"
+        );
     }
     network
 }
 
 #[test]
 fn gemm_with_all_its_attributes() {
-    let float = |name: &str, f| Attribute { name: name.into(), f, ..Attribute::default() };
-    let attributes = vec![integer("transA", 1), integer("transB", 1), float("alpha", 0.5), float("beta", 2.0)];
+    let float = |name: &str, f| Attribute {
+        name: name.into(),
+        f,
+        ..Attribute::default()
+    };
+    let attributes = vec![
+        integer("transA", 1),
+        integer("transB", 1),
+        float("alpha", 0.5),
+        float("beta", 2.0),
+    ];
     let bytes = model(
         vec![value("x", &[2, 1])],
-        vec![raw("w", &[3, 2], &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]), tensor("b", &[3], &[1.0, 0.0, -1.0])],
+        vec![
+            raw("w", &[3, 2], &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
+            tensor("b", &[3], &[1.0, 0.0, -1.0]),
+        ],
         vec![node("Gemm", &["x", "w", "b"], "y", attributes)],
     );
     let network = run(&bytes, &[1.0, -1.0], &[1.5, -0.5, -2.5]);
-    assert_eq!(network.layers().len(), 1, "nothing was rounded, so all is one layer");
+    assert_eq!(
+        network.layers().len(),
+        1,
+        "nothing was rounded, so all is one layer"
+    );
 }
 
 #[test]
 fn shapes_are_moved_as_numpy_moves_them() {
-    let perm = Attribute { name: "perm".into(), ints: vec![1, 0], ..Attribute::default() };
+    let perm = Attribute {
+        name: "perm".into(),
+        ints: vec![1, 0],
+        ..Attribute::default()
+    };
     let bytes = model(
         vec![value("a", &[0, 2]), value("b", &[1, 4])],
-        vec![integers("two", &[2, -1]), tensor("c", &[1, 2], &[10.0, 100.0]), tensor("one", &[3], &[1.0, 2.0, 3.0])],
+        vec![
+            integers("two", &[2, -1]),
+            tensor("c", &[1, 2], &[10.0, 100.0]),
+            tensor("one", &[3], &[1.0, 2.0, 3.0]),
+        ],
         vec![
             node("Concat", &["a", "b"], "ab", vec![integer("axis", -1)]),
             node("Reshape", &["ab", "two"], "m", vec![]),
@@ -83,14 +151,21 @@ fn shapes_are_moved_as_numpy_moves_them() {
             node("Flatten", &["p"], "y", vec![integer("axis", 0)]),
         ],
     );
-    run(&bytes, &[1.0, 2.0, 3.0, -4.0, 5.0, 6.0], &[10.0 + 40.0 + 90.0, 0.0 + 1000.0 + 1800.0]);
+    run(
+        &bytes,
+        &[1.0, 2.0, 3.0, -4.0, 5.0, 6.0],
+        &[10.0 + 40.0 + 90.0, 0.0 + 1000.0 + 1800.0],
+    );
 }
 
 #[test]
 fn sums_divisions_and_tanh_keep_their_exact_meaning() {
     let bytes = model(
         vec![value("x", &[1, 2])],
-        vec![tensor("third", &[2], &[3.0, 4.0]), tensor("shift", &[1], &[0.1])],
+        vec![
+            tensor("third", &[2], &[3.0, 4.0]),
+            tensor("shift", &[1], &[0.1]),
+        ],
         vec![
             node("Sub", &["shift", "x"], "s", vec![]),
             node("Div", &["s", "third"], "d", vec![]),
@@ -101,14 +176,28 @@ fn sums_divisions_and_tanh_keep_their_exact_meaning() {
     let shift = f64::from(0.1_f32);
     let of = |x: f64, by: f64| ((shift - x) / by).tanh() + shift;
     let network = run(&bytes, &[0.7, -0.3], &[of(0.7, 3.0), of(-0.3, 4.0)]);
-    assert!(network.layers().iter().any(|l| l.uncertainty > 0.0), "1/3 has no exact value");
+    assert!(
+        network.layers().iter().any(|l| l.uncertainty > 0.0),
+        "1/3 has no exact value"
+    );
 }
 
 #[test]
 fn constants_may_be_nodes() {
-    let t = Attribute { name: "value".into(), t: Some(tensor("", &[1, 1], &[2.5])), ..Attribute::default() };
-    let nodes = vec![node("Constant", &[], "c", vec![t]), node("MatMul", &["x", "c"], "y", vec![])];
-    run(&model(vec![value("x", &[1, 1])], vec![], nodes), &[2.0], &[5.0]);
+    let t = Attribute {
+        name: "value".into(),
+        t: Some(tensor("", &[1, 1], &[2.5])),
+        ..Attribute::default()
+    };
+    let nodes = vec![
+        node("Constant", &[], "c", vec![t]),
+        node("MatMul", &["x", "c"], "y", vec![]),
+    ];
+    run(
+        &model(vec![value("x", &[1, 1])], vec![], nodes),
+        &[2.0],
+        &[5.0],
+    );
 }
 
 #[test]
@@ -119,9 +208,16 @@ fn the_first_unsupported_operator_is_named() {
         node("Softmax", &["s"], "y", vec![]),
     ];
     let error = read(&model(vec![value("x", &[1, 2])], vec![], nodes)).expect_err("Sigmoid");
-    assert_eq!(error.to_string(), "node \"node_s\", operator Sigmoid: is not supported");
-    let residual = vec![node("Relu", &["x"], "r", vec![]), node("Add", &["x", "r"], "y", vec![])];
-    let error = read(&model(vec![value("x", &[1, 2])], vec![], residual)).expect_err("two variables");
+    assert_eq!(
+        error.to_string(),
+        "node \"node_s\", operator Sigmoid: is not supported"
+    );
+    let residual = vec![
+        node("Relu", &["x"], "r", vec![]),
+        node("Add", &["x", "r"], "y", vec![]),
+    ];
+    let error =
+        read(&model(vec![value("x", &[1, 2])], vec![], residual)).expect_err("two variables");
     assert!(error.to_string().contains("node_y"), "{error}");
 }
 

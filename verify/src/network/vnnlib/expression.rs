@@ -52,10 +52,16 @@ pub(super) fn statement(expression: &Sexp<'_>) -> Result<Statement, VnnlibError>
         return Err(place.error("expected (declare-const …) or (assert …)".to_owned()));
     };
     match items.as_slice() {
-        [Sexp::Word("declare-const", _), Sexp::Word(name, at), Sexp::Word("Real", _)] => match variable(name) {
+        [
+            Sexp::Word("declare-const", _),
+            Sexp::Word(name, at),
+            Sexp::Word("Real", _),
+        ] => match variable(name) {
             Some(Variable::X(index)) => Ok(Statement::Input(index)),
             Some(Variable::Y(index)) => Ok(Statement::Output(index)),
-            None => Err(at.error(format!("variable {name}: expected X_i or Y_i with i < {MOST_VARIABLES}"))),
+            None => Err(at.error(format!(
+                "variable {name}: expected X_i or Y_i with i < {MOST_VARIABLES}"
+            ))),
         },
         [Sexp::Word("assert", _), body] => formula(body).map(Statement::Assert),
         _ => Err(place.error("expected (declare-const NAME Real) or (assert FORMULA)".to_owned())),
@@ -77,9 +83,9 @@ fn formula(expression: &Sexp<'_>) -> Result<Formula, VnnlibError> {
             let both = [at_most(a, b, place)?, at_most(b, a, place)?];
             Ok(Formula::And(both.into_iter().map(Formula::Atom).collect()))
         }
-        [Sexp::Word(other, at), ..] => {
-            Err(at.error(format!("operator {other}: expected and, or, <=, >=, <, > or = with two sides")))
-        }
+        [Sexp::Word(other, at), ..] => Err(at.error(format!(
+            "operator {other}: expected and, or, <=, >=, <, > or = with two sides"
+        ))),
         _ => Err(place.error("expected a formula".to_owned())),
     }
 }
@@ -106,7 +112,12 @@ impl Linear {
 fn at_most(a: &Sexp<'_>, b: &Sexp<'_>, place: Place) -> Result<Atom, VnnlibError> {
     let mut difference = linear(a)?;
     difference.add(&linear(b)?, -1.0);
-    let mut atom = Atom { inputs: Vec::new(), outputs: Vec::new(), bound: -difference.constant, place };
+    let mut atom = Atom {
+        inputs: Vec::new(),
+        outputs: Vec::new(),
+        bound: -difference.constant,
+        place,
+    };
     for (variable, c) in difference.terms {
         if !c.is_finite() {
             return Err(place.error("a coefficient is too large".to_owned()));
@@ -128,11 +139,18 @@ fn linear(expression: &Sexp<'_>) -> Result<Linear, VnnlibError> {
     match expression {
         Sexp::Word(word, _) => {
             if let Some(variable) = variable(word) {
-                return Ok(Linear { terms: vec![(variable, 1.0)], constant: 0.0 });
+                return Ok(Linear {
+                    terms: vec![(variable, 1.0)],
+                    constant: 0.0,
+                });
             }
             let number = word.parse().ok().filter(|v: &f64| v.is_finite());
-            let constant = number.ok_or_else(|| place.error(format!("{word} is neither a variable nor a number")))?;
-            Ok(Linear { terms: Vec::new(), constant })
+            let constant = number
+                .ok_or_else(|| place.error(format!("{word} is neither a variable nor a number")))?;
+            Ok(Linear {
+                terms: Vec::new(),
+                constant,
+            })
         }
         Sexp::List(items, _) => match items.as_slice() {
             [Sexp::Word("+", _), parts @ ..] => sum(parts, 1.0),

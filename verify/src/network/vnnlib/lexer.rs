@@ -12,7 +12,11 @@ pub(super) struct Place {
 impl Place {
     /// An error at this place.
     pub(super) fn error(self, what: String) -> VnnlibError {
-        VnnlibError { line: self.line, column: self.column, what }
+        VnnlibError {
+            line: self.line,
+            column: self.column,
+            what,
+        }
     }
 }
 
@@ -43,7 +47,10 @@ pub(super) fn parse(text: &str) -> Result<Vec<Sexp<'_>>, VnnlibError> {
         let mut rest = code;
         while let Some(start) = rest.find(|c: char| !c.is_whitespace()) {
             rest = &rest[start..];
-            let place = Place { line: index + 1, column: code.len() - rest.len() + 1 };
+            let place = Place {
+                line: index + 1,
+                column: code.len() - rest.len() + 1,
+            };
             let length = match rest.as_bytes()[0] {
                 b'(' => {
                     if open.len() > DEEPEST {
@@ -62,7 +69,9 @@ pub(super) fn parse(text: &str) -> Result<Vec<Sexp<'_>>, VnnlibError> {
                     1
                 }
                 _ => {
-                    let end = rest.find(|c: char| c.is_whitespace() || c == '(' || c == ')').unwrap_or(rest.len());
+                    let end = rest
+                        .find(|c: char| c.is_whitespace() || c == '(' || c == ')')
+                        .unwrap_or(rest.len());
                     if let Some(outer) = open.last_mut() {
                         outer.0.push(Sexp::Word(&rest[..end], place));
                     }

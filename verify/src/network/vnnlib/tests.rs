@@ -11,17 +11,32 @@ const SMALL: &str = "
 ";
 
 fn half(coefficients: [f64; 2], bound: f64) -> Halfspace {
-    Halfspace { coefficients: coefficients.to_vec(), bound }
+    Halfspace {
+        coefficients: coefficients.to_vec(),
+        bound,
+    }
 }
 
 #[test]
 fn conjunctions_and_disjunctions_share_their_box() {
     let property = read(SMALL).expect("well formed");
-    assert_eq!((property.inputs, property.outputs, property.queries.len()), (2, 2, 1));
+    assert_eq!(
+        (property.inputs, property.outputs, property.queries.len()),
+        (2, 2, 1)
+    );
     let query = &property.queries[0];
-    assert_eq!(query.region, InputBox { lower: vec![-1.0, 0.0], upper: vec![0.25, 3.0] });
+    assert_eq!(
+        query.region,
+        InputBox {
+            lower: vec![-1.0, 0.0],
+            upper: vec![0.25, 3.0]
+        }
+    );
     let first = vec![half([1.0, -1.0], 0.0), half([-1.0, 0.0], -2.0)];
-    assert_eq!(query.unsafe_set, vec![first, vec![half([-1.0, -2.0], -7.0)]]);
+    assert_eq!(
+        query.unsafe_set,
+        vec![first, vec![half([-1.0, -2.0], -7.0)]]
+    );
 }
 
 #[test]
@@ -38,8 +53,16 @@ fn errors_say_where_and_what() {
     assert_eq!(at("(assert (<= X_0 1)").what, "a '(' that is never closed");
     let error = at("(declare-const X_0 Real)\n(assert (<= X_0 zebra))");
     assert_eq!((error.line, error.column), (2, 17));
-    assert!(at("(declare-const X_0 Real)(assert (<= X_0 1))").what.contains("X_0 is not bounded"));
-    assert!(at("(declare-const X_0 Real)(assert (<= (* X_0 X_0) 1))").what.contains("not linear"));
+    assert!(
+        at("(declare-const X_0 Real)(assert (<= X_0 1))")
+            .what
+            .contains("X_0 is not bounded")
+    );
+    assert!(
+        at("(declare-const X_0 Real)(assert (<= (* X_0 X_0) 1))")
+            .what
+            .contains("not linear")
+    );
     assert!(at(&"(".repeat(1000)).what.contains("nested"));
 }
 

@@ -1,0 +1,44 @@
+//! `cede verify check`.
+
+use super::network::read;
+use crate::failure::Failure;
+use cede_verify::network::Certificate;
+use clap::Args;
+use miette::{IntoDiagnostic, WrapErr};
+use std::io::Write as _;
+use std::path::PathBuf;
+
+/// Exit code 0 if the certificate proves what it says, 1 if it does not. Network and property are
+/// found as the certificate names them, from the present folder, unless given here.
+#[derive(Args)]
+pub(crate) struct Check {
+    /// The certificate.
+    #[arg(value_name = "CERT")]
+    certificate: PathBuf,
+    /// The network, if it lies elsewhere now.
+    #[arg(long, value_name = "FILE")]
+    onnx: Option<PathBuf>,
+    /// The property, if it lies elsewhere now.
+    #[arg(long, value_name = "FILE")]
+    vnnlib: Option<PathBuf>,
+}
+
+impl Check {
+    /// Runs the command.
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let text = std::fs::read_to_string(&self.certificate).into_diagnostic();
+        let certificate = text.and_then(|text| Certificate::from_text(&text).into_diagnostic());
+        let certificate = certificate
+            .wrap_err_with(|| format!("cannot use {}", self.certificate.display()))
+            .map_err(Failure::Input)?;
+        let onnx = self.onnx.unwrap_or_else(|| certificate.onnx.clone());
+        let vnnlib = self.vnnlib.unwrap_or_else(|| certificate.vnnlib.clone());
+        let (network, property) = read(&onnx, &vnnlib)?;
+        let regions = certificate.check(&network, &property);
+        let regions =
+            regions.map_err(|e| Failure::Check(format!("{}: {e}", self.certificate.display())))?;
+        // A reader that has seen enough may close the pipe.
+        let _ = writeln!(std::io::stdout(), "proved: {regions} regions checked");
+        Ok(())
+    }
+}

@@ -1,0 +1,145 @@
+//! `cede verify network`.
+
+use crate::failure::Failure;
+use cede_sim::output;
+use cede_verify::network::{self as verifier, Answer, Certificate, Report, Settings};
+use clap::Args;
+use miette::{IntoDiagnostic, WrapErr, miette};
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// The answer is about the network's real-number semantics: the exact values of its weights, and
+/// no rounding. First line of stdout: unsat (proved), sat (refuted; a witness follows in the
+/// VNN-COMP format), timeout or unknown.
+#[derive(Args)]
+pub(crate) struct Network {
+    /// The network, ONNX.
+    #[arg(long, value_name = "FILE")]
+    onnx: PathBuf,
+    /// The property, VNN-LIB 1.0.
+    #[arg(long, value_name = "FILE")]
+    vnnlib: PathBuf,
+    /// Give up after so many seconds.
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
+    timeout: f64,
+    /// Threads to search on; all cores by default.
+    #[arg(long, default_value_t = 0)]
+    threads: usize,
+    /// Seed of the search for counterexamples.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Write a certificate of `unsat` for `cede verify check`.
+    #[arg(long, value_name = "FILE")]
+    certificate: Option<PathBuf>,
+    /// Print one JSON object instead.
+    #[arg(long)]
+    json: bool,
+}
+
+impl Network {
+    /// Runs the command.
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let start = Instant::now();
+        let (network, property) = read(&self.onnx, &self.vnnlib)?;
+        let timeout = Duration::try_from_secs_f64(self.timeout).map_err(|_| {
+            Failure::Input(miette!(
+                help = "give seconds, for example 60",
+                "--timeout {}",
+                self.timeout
+            ))
+        })?;
+        let settings = Settings {
+            timeout,
+            seed: self.seed,
+            record: self.certificate.is_some(),
+            ..Settings::default()
+        };
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(self.threads)
+            .build()
+            .into_diagnostic();
+        let pool = pool.map_err(Failure::Input)?;
+        let report = pool
+            .install(|| verifier::verify(&network, &property, settings))
+            .into_diagnostic();
+        let mut report = report.map_err(Failure::Input)?;
+        if let (Some(path), Answer::Unsat) = (&self.certificate, &report.answer) {
+            let proofs = std::mem::take(&mut report.proofs);
+            let certificate = Certificate::new(&self.onnx, &self.vnnlib, proofs);
+            let text = certificate.to_text();
+            output::write(path, |file| file.write_all(text.as_bytes()))
+                .into_diagnostic()
+                .map_err(Failure::Input)?;
+        }
+        let seconds = start.elapsed().as_secs_f64();
+        // A reader that has seen enough may close the pipe.
+        let _ = writeln!(
+            std::io::stdout(),
+            "{}",
+            self.told(&network, &report, seconds)
+        );
+        Ok(())
+    }
+
+    fn told(&self, network: &verifier::Network, report: &Report, seconds: f64) -> String {
+        let word = word(&report.answer);
+        let witness = match &report.answer {
+            Answer::Sat(x) => Some((x, network.run(x).values)),
+            _ => None,
+        };
+        if self.json {
+            let witness = witness.map(|(x, y)| serde_json::json!({ "x": x, "y": y }));
+            return serde_json::json!({
+                "answer": word, "semantics": "real", "regions": report.regions,
+                "seconds": seconds, "witness": witness,
+            })
+            .to_string();
+        }
+        let Some((x, y)) = witness else {
+            return word.to_owned();
+        };
+        let pairs = |name: &str, values: &[f64]| -> Vec<String> {
+            values
+                .iter()
+                .enumerate()
+                .map(|(i, v)| format!("({name}_{i} {v:?})"))
+                .collect()
+        };
+        format!(
+            "{word}\n({})",
+            [pairs("X", x), pairs("Y", &y)].concat().join("\n")
+        )
+    }
+}
+
+fn word(answer: &Answer) -> &'static str {
+    match answer {
+        Answer::Unsat => "unsat",
+        Answer::Sat(_) => "sat",
+        Answer::Timeout => "timeout",
+        Answer::Unknown => "unknown",
+    }
+}
+
+/// Reads a network and a property.
+pub(crate) fn read(
+    onnx: &Path,
+    vnnlib: &Path,
+) -> Result<(verifier::Network, verifier::Property), Failure> {
+    let named = |path: &Path, help: &'static str| {
+        let place = path.display().to_string();
+        move |error: miette::Report| {
+            Failure::Input(error.wrap_err(format!("cannot use {place} ({help})")))
+        }
+    };
+    let bytes = std::fs::read(onnx).into_diagnostic();
+    let network = bytes.and_then(|bytes| verifier::onnx::read(&bytes).into_diagnostic());
+    let network = network.map_err(named(onnx, "--onnx: a feed-forward network in ONNX"))?;
+    let text = std::fs::read_to_string(vnnlib).into_diagnostic();
+    let property = text.and_then(|text| verifier::vnnlib::read(&text).into_diagnostic());
+    let property = property
+        .wrap_err("VNN-LIB")
+        .map_err(named(vnnlib, "--vnnlib: a property in VNN-LIB 1.0"))?;
+    Ok((network, property))
+}
