@@ -53,6 +53,8 @@ fn batch(criterion: &mut Criterion<CpuTime>) {
     for encounters in [64, 512, 4096, 32_768] {
         steps::<2>(&mut group, encounters, 1);
     }
+    // Against one thread: what handing out the work costs.
+    steps::<2>(&mut group, 32_768, 2);
     steps::<4>(&mut group, 4096, 1);
     steps::<8>(&mut group, 4096, 1);
     group.finish();

@@ -1,12 +1,13 @@
 //! Eight encounters in lockstep: the unit that a batch steps, and that vector instructions work on.
 
-use super::lanes::{separation, svo, svo_deviation};
+mod score;
+
 use super::library::{Library, Scenario};
 use super::motion::Motion;
 use super::{LANES, Lanes};
 use crate::encounter::Role;
-use crate::reward::{COLLISION, EpisodeLength, PAST_THE_RECORD};
-use cede_controller::svo::svo as exact_svo;
+use crate::reward::EpisodeLength;
+use cede_controller::svo::svo;
 use core::f32::consts::FRAC_PI_4;
 use core::ops::Range;
 use rand::RngExt;
@@ -29,7 +30,8 @@ pub enum Outcome {
 /// Eight encounters of `N` vehicles, stepped together; entry `i` of every array belongs to encounter `i`.
 ///
 /// Vehicles 0 and 1 are the two judged ones, the others the traffic around them, in the order
-/// of [`crate::Encounter::participants`]; vehicles beyond `N` are left out.
+/// of [`crate::Encounter::participants`]; vehicles beyond `N` are left out. Methods panic if they are
+/// asked for a lane or a vehicle that there is not; nothing else makes them panic.
 #[derive(Clone, Debug)]
 pub struct Block<const N: usize> {
     vehicles: [Motion; N],
@@ -224,6 +226,7 @@ impl<const N: usize> Block<N> {
         self.ended &= !(1 << lane);
         self.reference[lane] = scenario.svo;
         self.outcome[lane] = Outcome::Running;
+        self.gap[lane] = f32::INFINITY;
         self.reward[lane] = 0.0;
         self.earned[lane] = 0.0;
         self.speeds[lane] = 0.0;
@@ -234,7 +237,7 @@ impl<const N: usize> Block<N> {
         }
         let [d, other_d] = [self.distance[0][lane], self.distance[1][lane]];
         let [v, other_v] = [self.vehicles[0].v[lane], self.vehicles[1].v[lane]];
-        self.svo[lane] = exact_svo(v, d, other_v, other_d, FRAC_PI_4);
+        self.svo[lane] = svo(v, d, other_v, other_d, FRAC_PI_4);
     }
 
     fn place_vehicles(&mut self, lane: usize, library: &Library, scenario: &Scenario) {
@@ -264,92 +267,5 @@ impl<const N: usize> Block<N> {
                 }
             }
         }
-    }
-
-    /// Distances, SVO, rewards and outcomes of the states that the step has led to.
-    #[inline]
-    fn score(&mut self, library: &Library) {
-        self.gap = self.least_gap(library);
-        let [left, other] = [&self.vehicles[0], &self.vehicles[1]];
-        let speed = [left.v, other.v].map(f32x8::from);
-        let distance = [
-            f32x8::from(self.conflict_s[0]) - f32x8::from(left.s),
-            f32x8::from(self.conflict_s[1]) - f32x8::from(other.s),
-        ];
-        self.distance = distance.map(f32x8::to_array);
-        let svo = svo(speed, distance, self.svo.into());
-        self.svo = svo.to_array();
-
-        let (step, recorded) = (f32x8::from(self.step), f32x8::from(self.recorded));
-        let arrived = distance[0].simd_le(f32x8::ZERO) | distance[1].simd_le(f32x8::ZERO);
-        let collided = f32x8::from(self.gap).simd_le(f32x8::ZERO);
-        let late = step.simd_ge(recorded + recorded);
-
-        let reference = f32x8::from(self.reference.map(|index| library.svo(index)));
-        let past_record = f32x8::splat(PAST_THE_RECORD);
-        let deviation = svo_deviation(svo, reference);
-        let compared = step.simd_lt(recorded).bitselect(deviation, past_record);
-        // At the conflict point itself the SVO is pinned, and says nothing.
-        let social = arrived.bitselect(f32x8::ZERO, compared);
-        let reward = collided.bitselect(f32x8::splat(COLLISION), f32x8::ZERO) - social;
-        self.reward = reward.to_array();
-        self.earned = (f32x8::from(self.earned) + reward).to_array();
-        self.speeds = (f32x8::from(self.speeds) + (speed[0] + speed[1])).to_array();
-
-        let mut ended = (arrived | collided | late).to_bitmask();
-        self.ended |= ended;
-        while ended != 0 {
-            let lane = ended.trailing_zeros() as usize;
-            self.outcome[lane] = self.verdict(lane);
-            ended &= ended - 1;
-        }
-    }
-
-    fn verdict(&self, lane: usize) -> Outcome {
-        let past = [-self.distance[0][lane], -self.distance[1][lane]];
-        if self.gap[lane] <= 0.0 {
-            Outcome::Collided
-        } else if past[0] >= 0.0 || past[1] >= 0.0 {
-            // Both in one step: whoever reached it after the lesser share of its way, as in `Episode`.
-            let [moved, other_moved] =
-                [&self.vehicles[0], &self.vehicles[1]].map(|m| m.moved[lane]);
-            let earlier = past[0] * other_moved >= past[1] * moved;
-            let left = past[1] < 0.0 || (past[0] >= 0.0 && earlier);
-            Outcome::Arrived(if left { Role::Left } else { Role::Other })
-        } else if self.step[lane] >= 2.0 * self.recorded[lane] {
-            Outcome::TimedOut
-        } else {
-            Outcome::Running
-        }
-    }
-
-    #[inline]
-    fn least_gap(&self, library: &Library) -> Lanes {
-        let mut least = f32x8::splat(f32::INFINITY);
-        for ego in 0..2 {
-            for other in ego + 1..N {
-                least = self.narrow(ego, other, library, least);
-            }
-        }
-        least.to_array()
-    }
-
-    /// The lesser of `least` and the separation of two vehicles, where both are there.
-    #[inline]
-    fn narrow(&self, ego: usize, other: usize, library: &Library, least: f32x8) -> f32x8 {
-        let (a, b) = (self.vehicles[ego].boxes(), self.vehicles[other].boxes());
-        let [x, y] = [b.centre[0] - a.centre[0], b.centre[1] - a.centre[1]];
-        if (x * x + y * y)
-            .simd_gt(f32x8::splat(library.reach_squared))
-            .all()
-        {
-            return least;
-        }
-        let gap = separation(a, b, library.footprint);
-        let mut counts = gap.simd_lt(least);
-        if other >= 2 {
-            counts &= self.presence[other].mask(self.step);
-        }
-        counts.bitselect(gap, least)
     }
 }
