@@ -83,20 +83,59 @@ mod tests {
         }
     }
 
+    /// Whether `step` agrees with the closed form in `f64`, which integrates to the moment of rest.
+    fn is_exact(step: fn(State, f32) -> State, state: State, acceleration: f32) -> bool {
+        let (dt, v, a) = (f64::from(STEP), f64::from(state.v), f64::from(acceleration));
+        let moving = if v + a * dt < 0.0 { -v / a } else { dt };
+        let exact_s = f64::from(state.s) + v * moving + 0.5 * a * moving * moving;
+        let exact_v = v + a * moving;
+        let next = step(state, acceleration);
+        (f64::from(next.s) - exact_s).abs() < 5e-5
+            && (f64::from(next.v) - exact_v).abs() < 5e-6
+            && next.v >= 0.0
+            && next.s >= state.s
+    }
+
+    /// The property below is no truism: each of these is wrong in some of a few states.
+    #[test]
+    fn wrong_integrators_are_found_out() {
+        let euler: fn(State, f32) -> State = |State { s, v }: State, a: f32| State {
+            s: s + v * STEP,
+            v: (v + a * STEP).max(0.0),
+        };
+        let rolls_back = |State { s, v }: State, a: f32| State {
+            s: s + v * STEP + 0.5 * a * STEP * STEP,
+            v: v + a * STEP,
+        };
+        let stops_on_the_spot = |state: State, a: f32| match advance(state, a) {
+            State { v: 0.0, .. } => State { v: 0.0, ..state },
+            next => next,
+        };
+        let states = [(8.0, 3.0), (0.25, -3.0), (0.0, -1.0), (0.2, -8.0)];
+        for wrong in [euler, rolls_back, stops_on_the_spot] {
+            let passes = |&(v, a): &(f32, f32)| is_exact(wrong, State { s: 1.0, v }, a);
+            assert!(!states.iter().all(passes));
+        }
+        assert!(
+            states
+                .iter()
+                .all(|&(v, a)| is_exact(advance, State { s: 1.0, v }, a))
+        );
+    }
+
     proptest! {
-        /// Against the closed form in `f64`, which integrates to the moment of rest.
         #[test]
         fn one_step_is_the_exact_integral(
             s in -200.0_f32..200.0, v in 0.0_f32..30.0, a in -8.0_f32..8.0,
         ) {
-            let (dt, v64, a64) = (f64::from(STEP), f64::from(v), f64::from(a));
-            let moving = if v64 + a64 * dt < 0.0 { -v64 / a64 } else { dt };
-            let exact_s = f64::from(s) + v64 * moving + 0.5 * a64 * moving * moving;
-            let exact_v = v64 + a64 * moving;
-            let next = advance(State { s, v }, a);
-            prop_assert!((f64::from(next.s) - exact_s).abs() < 5e-5);
-            prop_assert!((f64::from(next.v) - exact_v).abs() < 5e-6);
-            prop_assert!(next.v >= 0.0 && next.s >= s);
+            let state = State { s, v };
+            prop_assert!(is_exact(advance, state, a));
+        }
+
+        #[test]
+        fn vehicles_about_to_stop_are_stepped_exactly(v in 0.0_f32..0.8, a in -8.0_f32..0.0) {
+            let state = State { s: 0.0, v };
+            prop_assert!(is_exact(advance, state, a));
         }
     }
 }
