@@ -1,6 +1,7 @@
 //! The scene description (TOML) of a synthetic site: which tracks meet there.
 
 use super::layout::{CENTRE, Layout, Movement};
+use super::plan::{files_of, in_test, in_validation};
 use super::zone::Meeting;
 use crate::data::Site;
 use crate::encounter::Manoeuvre;
@@ -33,12 +34,11 @@ impl Layout {
         }
     }
 
-    /// The site as the extraction knows it, from [`Layout::description`].
-    ///
-    /// # Errors
-    /// Never, unless the description is not one.
-    pub(super) fn site(&self) -> Result<Site, crate::data::DataError> {
-        Site::parse(Path::new(&self.name), &self.description())
+    /// The site as the extraction knows it.
+    pub(super) fn site(&self) -> Site {
+        // The description is ours and its tests read it; headings would serve if it were wrong.
+        let parsed = Site::parse(Path::new(&self.name), &self.description());
+        parsed.unwrap_or_else(|_| Site::by_headings(&self.name))
     }
 
     /// The scene description, as `Site::named` reads it from a file.
@@ -47,6 +47,17 @@ impl Layout {
             "# A synthetic site. Its conflicts name the vehicle that has to give way first.\n\n\
              name = \"{0}\"\nfolder = \"{0}\"\n",
             self.name
+        );
+        let _ = writeln!(
+            text,
+            "\n# Numbers of the recording files; a file that is in none of the lists is for training.\n\
+             [split]\nvalidation = {:?}\ntest = {:?}",
+            files_of(self.number)
+                .filter(|&file| in_validation(file))
+                .collect::<Vec<_>>(),
+            files_of(self.number)
+                .filter(|&file| in_test(file))
+                .collect::<Vec<_>>(),
         );
         for (arm, name) in self.arms.iter().zip(ARMS) {
             let (along, main, side) = if arm.outward.x.abs() > arm.outward.y.abs() {

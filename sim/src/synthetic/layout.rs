@@ -2,6 +2,7 @@
 
 use super::description::Conflict;
 use super::human::Right;
+use super::plan::{Class, Purpose, class_of, name_of, stream};
 use super::profile::SpeedProfile;
 use super::zone::{Meeting, meeting};
 use crate::encounter::{Manoeuvre, SimRoute};
@@ -58,6 +59,7 @@ pub(super) struct Movement {
 /// An intersection with its rules.
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
+    pub(super) number: u16,
     pub(super) name: String,
     pub(super) control: Control,
     pub(super) arms: Vec<Arm>,
@@ -89,8 +91,10 @@ impl Arm {
 }
 
 impl Layout {
-    /// An intersection of `arms` (3 or 4) arms whose measures are drawn from `rng`.
-    pub(super) fn draw(name: String, control: Control, arms: usize, rng: &mut Pcg64) -> Self {
+    /// Site `number`, with measures drawn for its class.
+    pub(super) fn draw(number: u16, seed: u64) -> Self {
+        let Class { control, arms, .. } = class_of(number);
+        let rng = &mut stream(seed, number, Purpose::Site);
         let arms: Vec<Arm> = (0..arms).map(|i| draw_arm(i, control, rng)).collect();
         let mut movements = Vec::new();
         for from in 0..arms.len() {
@@ -103,7 +107,8 @@ impl Layout {
             .map(|a| movements.iter().map(|b| meeting(a, b)).collect())
             .collect();
         let mut layout = Self {
-            name,
+            number,
+            name: name_of(number),
             control,
             arms,
             movements,
@@ -220,7 +225,7 @@ fn draw_movement(arms: &[Arm], from: usize, to: usize, rng: &mut Pcg64) -> Optio
 }
 
 /// A cubic Bézier curve from `a` in direction `u` to `b` in direction `w`; close to a circle's arc.
-fn curve(a: Point, u: Point, b: Point, w: Point) -> impl Iterator<Item = Point> {
+pub(super) fn curve(a: Point, u: Point, b: Point, w: Point) -> impl Iterator<Item = Point> {
     const PIECES: u8 = 24;
     let handle = 0.39 * a.distance(b);
     let (c, d) = (a + u * handle, b - w * handle);

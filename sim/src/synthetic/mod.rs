@@ -6,18 +6,23 @@
 //! No recorded track is used, so what is learned from it may be shipped.
 
 mod description;
+mod files;
 mod human;
 mod layout;
+mod map;
+mod plan;
 mod profile;
 mod rules;
 mod traffic;
 mod zone;
 
+pub use files::{WrittenSite, write};
+
 use crate::data::{Dataset, Files, Recording, Site, extract};
 use crate::encounter::Encounter;
 use layout::{Control, Layout};
+use plan::{Purpose, in_test, in_validation, site_of, stream};
 use rand::RngExt;
-use rand_pcg::Pcg64;
 use rayon::prelude::*;
 use traffic::Traffic;
 
@@ -25,26 +30,12 @@ use traffic::Traffic;
 const STEPS: u32 = 1200;
 /// Steps before the recording begins, so that it begins in the middle of things.
 const WARM_UP: u32 = 400;
-/// Recordings of one site.
-const RECORDINGS_PER_SITE: u16 = 4;
-/// The classes of sites, in turn: all-way stops, as the recorded sites are, most often.
-const CLASSES: [(Control, usize, &str); 10] = [
-    (Control::AllWayStop, 3, "T-AWS"),
-    (Control::AllWayStop, 4, "X-AWS"),
-    (Control::TwoWayStop, 3, "T-TWS"),
-    (Control::AllWayStop, 4, "X-AWS"),
-    (Control::AllWayStop, 3, "T-AWS"),
-    (Control::TwoWayStop, 4, "X-TWS"),
-    (Control::Uncontrolled, 3, "T-UNC"),
-    (Control::AllWayStop, 3, "T-AWS"),
-    (Control::Uncontrolled, 4, "X-UNC"),
-    (Control::AllWayStop, 4, "X-AWS"),
-];
 /// Recordings that are generated at a time, until there are encounters enough.
 const BATCH: u16 = 20;
 
 /// A generated recording with its encounters.
 struct Generated {
+    layout: Layout,
     recording: Recording,
     encounters: Vec<Encounter>,
 }
@@ -60,7 +51,6 @@ impl Dataset {
     pub fn synthetic(encounters: usize, seed: u64) -> Self {
         let generated = generate(encounters, seed);
         let last = u16::try_from(generated.len()).unwrap_or(u16::MAX);
-        let every_seventh = |rest| (0..last).filter(|file| file % 7 == rest).collect();
         let mut dataset = Self {
             site: Site::by_headings("synthetic"),
             map: None,
@@ -69,8 +59,8 @@ impl Dataset {
             passed_over: Vec::new(),
         };
         dataset.site.split = Files {
-            validation: every_seventh(5),
-            test: every_seventh(6),
+            validation: (0..last).filter(|&file| in_validation(file)).collect(),
+            test: (0..last).filter(|&file| in_test(file)).collect(),
         };
         for item in generated {
             dataset.recordings.push(item.recording);
@@ -101,40 +91,21 @@ fn generate(encounters: usize, seed: u64) -> Vec<Generated> {
 
 impl Generated {
     fn new(file: u16, seed: u64) -> Self {
-        let classes = CLASSES.len() as u16;
-        let (class, round) = (file % classes, file / (classes * RECORDINGS_PER_SITE));
-        let (control, arms, name) = CLASSES[usize::from(class)];
-        let number = class + classes * round;
-        let layout = Layout::draw(
-            format!("SYN-{name}-{number}"),
-            control,
-            arms,
-            &mut stream(seed, number, 0),
-        );
-        let mut rng = stream(seed, file, 1);
-        let flow = match control {
+        let layout = Layout::draw(site_of(file), seed);
+        let mut rng = stream(seed, file, Purpose::Traffic);
+        let flow = match layout.control {
             Control::AllWayStop => rng.random_range(0.1..0.7),
             _ => rng.random_range(0.08..0.3),
         };
         let tracks = Traffic::new(&layout, flow, rng).record(WARM_UP, STEPS);
         let recording = Recording { file, tracks };
-        let site = layout
-            .site()
-            .unwrap_or_else(|_| Site::by_headings(&layout.name));
-        let encounters = extract(&site, &recording);
+        let encounters = extract(&layout.site(), &recording);
         Self {
+            layout,
             recording,
             encounters,
         }
     }
-}
-
-/// The random numbers of one item; none depends on another item.
-fn stream(seed: u64, item: u16, purpose: u8) -> Pcg64 {
-    Pcg64::new(
-        u128::from(seed),
-        u128::from(item) << 8 | u128::from(purpose),
-    )
 }
 
 #[cfg(test)]

@@ -1,15 +1,20 @@
 //! Who has to stop, and who has to give way to whom.
 
 use super::human::Right;
-use super::layout::{Control, Layout, Movement};
+use super::layout::{Arm, Control, Layout, Movement};
 use crate::encounter::Manoeuvre;
 
 impl Layout {
     /// Whether everybody on this way has to stop at the line.
     pub(super) fn must_stop(&self, movement: &Movement) -> bool {
+        self.stops(&self.arms[movement.from])
+    }
+
+    /// Whether everybody on `arm` has to stop at its line.
+    pub(super) fn stops(&self, arm: &Arm) -> bool {
         match self.control {
             Control::AllWayStop => true,
-            Control::TwoWayStop => !self.arms[movement.from].major,
+            Control::TwoWayStop => !arm.major,
             Control::Uncontrolled => false,
         }
     }

@@ -1,0 +1,95 @@
+//! Which sites there are, which recordings each has, and what they serve for.
+
+use super::layout::Control;
+use rand_pcg::Pcg64;
+
+/// The class of a site.
+#[derive(Clone, Copy)]
+pub(super) struct Class {
+    pub(super) control: Control,
+    pub(super) arms: usize,
+    name: &'static str,
+}
+
+const fn class(control: Control, arms: usize, name: &'static str) -> Class {
+    Class {
+        control,
+        arms,
+        name,
+    }
+}
+
+/// The classes in turn: all-way stops, as the recorded sites are, most often.
+const CLASSES: [Class; 10] = [
+    class(Control::AllWayStop, 3, "T-AWS"),
+    class(Control::AllWayStop, 4, "X-AWS"),
+    class(Control::TwoWayStop, 3, "T-TWS"),
+    class(Control::AllWayStop, 4, "X-AWS"),
+    class(Control::AllWayStop, 3, "T-AWS"),
+    class(Control::TwoWayStop, 4, "X-TWS"),
+    class(Control::Uncontrolled, 3, "T-UNC"),
+    class(Control::AllWayStop, 3, "T-AWS"),
+    class(Control::Uncontrolled, 4, "X-UNC"),
+    class(Control::AllWayStop, 4, "X-AWS"),
+];
+const PER_ROUND: u16 = CLASSES.len() as u16;
+/// Recordings of one site.
+const RECORDINGS: u16 = 4;
+
+/// Number of the site of recording `file`: ten recordings in a row are of ten sites.
+pub(super) fn site_of(file: u16) -> u16 {
+    file % PER_ROUND + PER_ROUND * (file / (PER_ROUND * RECORDINGS))
+}
+
+/// The recordings of site `number`.
+pub(super) fn files_of(number: u16) -> impl Iterator<Item = u16> {
+    let (class, round) = (number % PER_ROUND, number / PER_ROUND);
+    (0..RECORDINGS).map(move |k| class + PER_ROUND * (round * RECORDINGS + k))
+}
+
+pub(super) fn class_of(number: u16) -> Class {
+    CLASSES[usize::from(number % PER_ROUND)]
+}
+
+/// As in `SYN-T-AWS-10`.
+pub(super) fn name_of(number: u16) -> String {
+    format!("SYN-{}-{number}", class_of(number).name)
+}
+
+/// Two of seven recordings are kept apart; seven has no factor in common with the classes.
+pub(super) fn in_validation(file: u16) -> bool {
+    file % 7 == 5
+}
+
+/// See [`in_validation`].
+pub(super) fn in_test(file: u16) -> bool {
+    file % 7 == 6
+}
+
+/// What random numbers are for; none depends on those of another item.
+#[derive(Clone, Copy)]
+pub(super) enum Purpose {
+    Site,
+    Traffic,
+}
+
+/// The random numbers of one site or recording.
+pub(super) fn stream(seed: u64, item: u16, purpose: Purpose) -> Pcg64 {
+    let stream = u128::from(item) << 8 | purpose as u128;
+    Pcg64::new(u128::from(seed), stream)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_recording_has_one_site() {
+        for file in 0..200 {
+            let sites: Vec<u16> = (0..60)
+                .filter(|&n| files_of(n).any(|f| f == file))
+                .collect();
+            assert_eq!(sites, [site_of(file)]);
+        }
+    }
+}
