@@ -1,9 +1,9 @@
 //! Synthetic traffic: what is written is read back, and what people do is plausible.
 
+use cede_controller::{Footprint, Point, Pose};
 use cede_sim::data::{Split, Track};
 use cede_sim::overlap::OrientedBox;
 use cede_sim::{Dataset, synthetic};
-use cede_controller::{Footprint, Point, Pose};
 
 #[test]
 fn written_recordings_are_read_back_to_the_same_encounters() {
@@ -31,18 +31,29 @@ fn people_drive_as_people_do() {
     let data = Dataset::synthetic(150, 5);
     let mut hard = 0;
     let mut steps = 0;
-    for track in data.recordings.iter().flat_map(|recording| &recording.tracks) {
+    for track in data
+        .recordings
+        .iter()
+        .flat_map(|recording| &recording.tracks)
+    {
         let speeds: Vec<f64> = track.states.iter().map(|s| s.vx.hypot(s.vy)).collect();
         for pair in speeds.windows(2) {
             let acceleration = (pair[1] - pair[0]) / 0.1;
             // Speeds have three decimals, and one that stops does so within a step.
-            assert!(acceleration.abs() < 3.05, "{acceleration} m/s² of track {}", track.id);
+            assert!(
+                acceleration.abs() < 3.05,
+                "{acceleration} m/s² of track {}",
+                track.id
+            );
             hard += usize::from(acceleration.abs() > 2.5);
             steps += 1;
         }
         assert!(speeds.iter().all(|&v| v < 17.0));
     }
-    assert!(hard * 100 < steps, "{hard} of {steps} steps beyond 2.5 m/s²");
+    assert!(
+        hard * 100 < steps,
+        "{hard} of {steps} steps beyond 2.5 m/s²"
+    );
 }
 
 #[test]
@@ -51,10 +62,22 @@ fn nobody_is_hit_and_nobody_waits_for_ever() {
     for recording in &data.recordings {
         for (i, a) in recording.tracks.iter().enumerate() {
             for b in &recording.tracks[..i] {
-                assert_eq!(touch(a, b), None, "file {}: {} and {}", recording.file, a.id, b.id);
+                assert_eq!(
+                    touch(a, b),
+                    None,
+                    "file {}: {} and {}",
+                    recording.file,
+                    a.id,
+                    b.id
+                );
             }
             let rest = a.states.iter().filter(|s| s.vx.hypot(s.vy) < 0.1).count();
-            assert!(rest < 900, "file {}: {} rests for {rest} steps", recording.file, a.id);
+            assert!(
+                rest < 900,
+                "file {}: {} rests for {rest} steps",
+                recording.file,
+                a.id
+            );
         }
     }
 }
@@ -63,7 +86,9 @@ fn nobody_is_hit_and_nobody_waits_for_ever() {
 fn touch(a: &Track, b: &Track) -> Option<u64> {
     let begin = a.first_ms.max(b.first_ms);
     let end = a.last_ms().min(b.last_ms());
-    (begin..=end).step_by(100).find(|&time| covered(a, time).overlaps(&covered(b, time)))
+    (begin..=end)
+        .step_by(100)
+        .find(|&time| covered(a, time).overlaps(&covered(b, time)))
 }
 
 fn covered(track: &Track, time: u64) -> OrientedBox {

@@ -56,11 +56,11 @@ impl Character {
             (mean + spread * normal).clamp(low, high)
         };
         let svo = around(FRAC_PI_4, 0.3, 0.0, FRAC_PI_2);
-        let rolls = around(0.0, 1.0, -3.0, 3.0) > 0.0;
+        let rolls = around(0.0, 1.0, -3.0, 3.0) > -0.5;
         Self {
-            pace: around(1.0, 0.13, 0.65, 1.4),
-            acceleration: around(1.7, 0.35, 0.9, 2.6),
-            deceleration: around(1.4, 0.3, 0.8, 2.2),
+            pace: around(0.97, 0.16, 0.6, 1.45),
+            acceleration: around(1.75, 0.45, 0.8, 2.8),
+            deceleration: around(1.45, 0.4, 0.8, 2.4),
             headway: around(1.3, 0.3, 0.7, 2.2),
             standstill: around(2.2, 0.6, 1.0, 4.0),
             rolling: if rolls {
@@ -68,11 +68,11 @@ impl Character {
             } else {
                 0.0
             },
-            dwell: around(0.5, 0.6, 0.0, 2.5),
+            dwell: around(0.4, 0.7, 0.0, 2.5),
             overshoot: around(-0.6, 1.0, -3.0, 1.5),
             svo,
             gap: around(2.5, 0.5, 1.2, 4.0) * (0.6 + 0.4 * svo / FRAC_PI_4),
-            reaction: around(0.7, 0.25, 0.3, 1.5),
+            reaction: around(0.8, 0.3, 0.3, 1.8),
             patience: around(2.5, 0.8, 1.0, 5.0),
             unsteadiness: around(0.2, 0.08, 0.05, 0.4),
             misjudgement: around(0.0, 0.4, -1.2, 1.2) + 0.6 * (svo - FRAC_PI_4) / FRAC_PI_4,
@@ -249,7 +249,7 @@ impl Human {
         let leave = travel_time(rival.own.1, seen.speed, c.acceleration, top);
         if rival.ahead {
             let margin = 0.4 * (c.svo / FRAC_PI_4);
-            return arrive > clear_time(rival) + margin;
+            return arrive > clear_time(rival) + margin - 0.3;
         }
         let theirs = match rival.right {
             Right::Mine => false,

@@ -95,11 +95,12 @@ impl Layout {
     pub(super) fn draw(number: u16, seed: u64) -> Self {
         let Class { control, arms, .. } = class_of(number);
         let rng = &mut stream(seed, number, Purpose::Site);
-        let arms: Vec<Arm> = (0..arms).map(|i| draw_arm(i, control, rng)).collect();
+        let style = Style::draw(control, rng);
+        let arms: Vec<Arm> = (0..arms).map(|i| style.arm(i, rng)).collect();
         let mut movements = Vec::new();
         for from in 0..arms.len() {
             for to in (0..arms.len()).filter(|&to| to != from) {
-                movements.extend(draw_movement(&arms, from, to, rng));
+                movements.extend(draw_movement(&style, &arms, from, to, rng));
             }
         }
         let meetings = movements
@@ -160,34 +161,62 @@ impl Layout {
     }
 }
 
-/// Arm `index`: 0 east, 1 north, 2 west, 3 south, each turned by up to 10°.
-fn draw_arm(index: usize, control: Control, rng: &mut Pcg64) -> Arm {
-    let degrees = 90.0 * index as f32 + rng.random_range(-10.0..10.0);
-    let angle = degrees.to_radians();
-    let major = index.is_multiple_of(2);
-    let line = rng.random_range(10.5..15.0);
-    let speed = match (control, major) {
-        (Control::TwoWayStop, true) => rng.random_range(8.0..12.0),
-        (Control::Uncontrolled, _) => rng.random_range(6.0..9.0),
-        _ => rng.random_range(6.0..9.5),
-    };
-    let busy = if control == Control::TwoWayStop && !major {
-        0.5
-    } else {
-        1.0
-    };
-    Arm {
-        outward: Point::new(libm::cosf(angle), libm::sinf(angle)),
-        lane_width: rng.random_range(3.3..4.2),
-        line,
-        edge: line + rng.random_range(24.0..45.0),
-        speed,
-        major,
-        demand: busy * rng.random_range(0.4..1.2),
+/// What the arms of one site have in common.
+struct Style {
+    control: Control,
+    /// From 0, a narrow crossing of residential streets, to 1, a wide one.
+    size: f32,
+    /// Usual speed, m/s.
+    speed: f32,
+}
+
+impl Style {
+    fn draw(control: Control, rng: &mut Pcg64) -> Self {
+        Self {
+            control,
+            size: rng.random_range(0.0..1.0),
+            speed: rng.random_range(5.5..11.0),
+        }
+    }
+
+    /// Arm `index`: 0 east, 1 north, 2 west, 3 south, each turned by up to 10°.
+    fn arm(&self, index: usize, rng: &mut Pcg64) -> Arm {
+        let degrees = 90.0 * index as f32 + rng.random_range(-10.0..10.0);
+        let angle = degrees.to_radians();
+        let major = index.is_multiple_of(2);
+        let line = 10.5 + 7.0 * self.size + rng.random_range(0.0..3.0);
+        let minor = self.control == Control::TwoWayStop && !major;
+        // Some arms are much busier than others.
+        let uneven: f32 = rng.random_range(0.35..1.2);
+        Arm {
+            outward: Point::new(libm::cosf(angle), libm::sinf(angle)),
+            lane_width: rng.random_range(3.3..4.0),
+            line,
+            edge: line + rng.random_range(20.0..50.0),
+            speed: self.speed * rng.random_range(0.8..1.25),
+            major,
+            demand: uneven * uneven * uneven * if minor { 0.4 } else { 1.0 },
+        }
+    }
+
+    /// How far from the centre (m) the curve of a `manoeuvre` begins and ends.
+    fn reach(&self, manoeuvre: Manoeuvre, rng: &mut Pcg64) -> f32 {
+        let wider = rng.random_range(0.0..1.5);
+        match manoeuvre {
+            Manoeuvre::Left => 8.0 + 6.0 * self.size + wider,
+            Manoeuvre::Right => 9.5 + 4.0 * self.size + wider,
+            _ => 10.0,
+        }
     }
 }
 
-fn draw_movement(arms: &[Arm], from: usize, to: usize, rng: &mut Pcg64) -> Option<Movement> {
+fn draw_movement(
+    style: &Style,
+    arms: &[Arm],
+    from: usize,
+    to: usize,
+    rng: &mut Pcg64,
+) -> Option<Movement> {
     let (a, b) = (&arms[from], &arms[to]);
     let (entry, exit) = (a.outward * -1.0, b.outward);
     let turn = libm::atan2f(entry.cross(exit), entry.dot(exit)).to_degrees();
@@ -197,12 +226,7 @@ fn draw_movement(arms: &[Arm], from: usize, to: usize, rng: &mut Pcg64) -> Optio
         -130.0..=-50.0 => Manoeuvre::Right,
         _ => return None,
     };
-    // Where the curve begins and ends, from the centre.
-    let reach = match manoeuvre {
-        Manoeuvre::Right => 10.5,
-        Manoeuvre::Left => rng.random_range(8.0..10.0),
-        _ => 10.0,
-    };
+    let reach = style.reach(manoeuvre, rng);
     let points = curve(a.inbound(reach), entry, b.outbound(reach), exit);
     let points = [a.inbound(a.edge)]
         .into_iter()
