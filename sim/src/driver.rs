@@ -7,6 +7,7 @@
 mod baseline;
 mod constant;
 mod controller;
+mod human;
 mod idm;
 mod logistic;
 mod nearer_first;
@@ -16,6 +17,7 @@ mod right_of_way;
 pub use baseline::{Baseline, FitError};
 pub use constant::{InitialSpeed, MeanSpeed};
 pub use controller::{Cede, observe, scene};
+pub use human::Human;
 pub use idm::Idm;
 pub use logistic::Logistic;
 pub use nearer_first::NearerFirst;

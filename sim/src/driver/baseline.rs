@@ -1,6 +1,6 @@
 //! The rule-based drivers by name.
 
-use super::{DriverFactory, Idm, InitialSpeed, Logistic, MeanSpeed, NearerFirst, Replay};
+use super::{DriverFactory, Human, Idm, InitialSpeed, Logistic, MeanSpeed, NearerFirst, Replay};
 use crate::encounter::Encounter;
 use std::fmt;
 use std::str::FromStr;
@@ -19,6 +19,8 @@ pub enum Baseline {
     NearerFirst,
     /// The intelligent driver model with stop-sign behaviour.
     Idm,
+    /// The human driver of the synthetic scenarios.
+    Human,
     /// A logistic model on the initial state says who goes; the other stops.
     Logistic,
 }
@@ -33,12 +35,13 @@ pub enum FitError {
 
 impl Baseline {
     /// All of them, in the order of the table.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Replay,
         Self::InitialSpeed,
         Self::MeanSpeed,
         Self::NearerFirst,
         Self::Idm,
+        Self::Human,
         Self::Logistic,
     ];
 
@@ -51,6 +54,7 @@ impl Baseline {
             Self::MeanSpeed => "mean-speed",
             Self::NearerFirst => "nearer-first",
             Self::Idm => "idm",
+            Self::Human => "human",
             Self::Logistic => "logistic",
         }
     }
@@ -68,6 +72,7 @@ impl Baseline {
             }
             Self::NearerFirst => Box::new(NearerFirst),
             Self::Idm => Box::new(Idm),
+            Self::Human => Box::new(Human),
             Self::Logistic => Box::new(Logistic::fit(training).ok_or(FitError::NoTraining(self))?),
         })
     }
@@ -114,7 +119,7 @@ mod tests {
         for baseline in Baseline::ALL {
             assert_eq!(baseline.name().parse(), Ok(baseline));
         }
-        assert!("human".parse::<Baseline>().is_err());
+        assert!("nobody".parse::<Baseline>().is_err());
     }
 
     #[test]

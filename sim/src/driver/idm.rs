@@ -117,7 +117,7 @@ fn follow(speed: f32, gap: f32, leader: f32) -> f32 {
 }
 
 /// The gap (m) to the rear of the nearest vehicle ahead in the driver's lane, and its speed (m/s).
-fn leader(view: &View<'_>) -> Option<(f32, f32)> {
+pub(super) fn leader(view: &View<'_>) -> Option<(f32, f32)> {
     let (own, state) = view.own()?;
     let mut nearest: Option<(f32, f32)> = None;
     for (index, vehicle) in view.encounter.participants.iter().enumerate() {

@@ -13,44 +13,44 @@ use rand_pcg::Pcg64;
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 
 /// Speeds (m/s) below this count as standing.
-pub(super) const STANDING: f32 = 0.3;
+pub(crate) const STANDING: f32 = 0.3;
 
 /// What kind of driver somebody is.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Character {
+pub(crate) struct Character {
     /// Speed relative to a plain driver's.
-    pub(super) pace: f32,
+    pub(crate) pace: f32,
     /// Acceleration from rest in m/s².
-    pub(super) acceleration: f32,
+    pub(crate) acceleration: f32,
     /// Usual deceleration in m/s².
-    pub(super) deceleration: f32,
+    pub(crate) deceleration: f32,
     /// Time headway to the vehicle ahead in s.
-    pub(super) headway: f32,
+    pub(crate) headway: f32,
     /// Distance between bumpers at rest in m.
-    pub(super) standstill: f32,
+    pub(crate) standstill: f32,
     /// Speed (m/s) at which it rolls over a stop line; 0 if it stops.
-    pub(super) rolling: f32,
+    pub(crate) rolling: f32,
     /// How long it stands at a stop line at least, s.
-    pub(super) dwell: f32,
+    pub(crate) dwell: f32,
     /// How far past the line (m) its bumper stops; negative before it.
-    pub(super) overshoot: f32,
+    pub(crate) overshoot: f32,
     /// Social value orientation in rad, in [0, π/2]: π/4 is cooperative.
-    pub(super) svo: f32,
+    pub(crate) svo: f32,
     /// Gap (s) that it accepts in front of somebody with the right of way.
-    pub(super) gap: f32,
+    pub(crate) gap: f32,
     /// Time (s) from seeing that the way is free until going.
-    pub(super) reaction: f32,
+    pub(crate) reaction: f32,
     /// How long (s) it waits for somebody who does not move.
-    pub(super) patience: f32,
+    pub(crate) patience: f32,
     /// Standard deviation of the unsteady part of its acceleration, m/s².
-    pub(super) unsteadiness: f32,
+    pub(crate) unsteadiness: f32,
     /// By how much (s) it mistakes who came first.
-    pub(super) misjudgement: f32,
+    pub(crate) misjudgement: f32,
 }
 
 impl Character {
     /// A driver drawn from the population. The numbers are of the order of the recorded ones.
-    pub(super) fn draw(rng: &mut Pcg64) -> Self {
+    pub(crate) fn draw(rng: &mut Pcg64) -> Self {
         let mut around = |mean: f32, spread: f32, low: f32, high: f32| {
             let normal: f32 = rand_distr::StandardNormal.sample(rng);
             (mean + spread * normal).clamp(low, high)
@@ -82,16 +82,16 @@ impl Character {
 
 /// The vehicle ahead in the same lane.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Leader {
+pub(crate) struct Leader {
     /// Metres from bumper to bumper.
-    pub(super) gap: f32,
+    pub(crate) gap: f32,
     /// Its speed in m/s.
-    pub(super) speed: f32,
+    pub(crate) speed: f32,
 }
 
 /// Who goes first by the rules, as long as neither is in the intersection.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Right {
+pub(crate) enum Right {
     /// The driver itself.
     Mine,
     /// The other.
@@ -102,41 +102,41 @@ pub(super) enum Right {
 
 /// Another vehicle whose way conflicts.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rival {
+pub(crate) struct Rival {
     /// Distances (m) until the driver enters and leaves the shared zone.
-    pub(super) own: (f32, f32),
+    pub(crate) own: (f32, f32),
     /// Distances (m) until the other enters and leaves it.
-    pub(super) other: (f32, f32),
+    pub(crate) other: (f32, f32),
     /// The other's speed in m/s.
-    pub(super) speed: f32,
+    pub(crate) speed: f32,
     /// Whether the other entered the intersection, and before the driver did.
-    pub(super) ahead: bool,
+    pub(crate) ahead: bool,
     /// Who goes first by the rules.
-    pub(super) right: Right,
+    pub(crate) right: Right,
 }
 
 /// What a driver sees.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Situation<'a> {
+pub(crate) struct Situation<'a> {
     /// Own speed in m/s.
-    pub(super) speed: f32,
+    pub(crate) speed: f32,
     /// Speed (m/s) that a plain driver has here, and its slope along the route in 1/s.
-    pub(super) profile: (f32, f32),
+    pub(crate) profile: (f32, f32),
     /// What a plain driver drives at most across the intersection, m/s.
-    pub(super) crossing_speed: f32,
+    pub(crate) crossing_speed: f32,
     /// Distance (m) from the own bumper to the line; negative past it.
-    pub(super) to_line: f32,
+    pub(crate) to_line: f32,
     /// Whether it has to stop there whatever comes.
-    pub(super) must_stop: bool,
+    pub(crate) must_stop: bool,
     /// The vehicle ahead.
-    pub(super) leader: Option<Leader>,
+    pub(crate) leader: Option<Leader>,
     /// The others whose ways conflict and who have not yet passed.
-    pub(super) rivals: &'a [Rival],
+    pub(crate) rivals: &'a [Rival],
 }
 
 /// A driver with what it has in mind.
 #[derive(Clone, Debug)]
-pub(super) struct Human {
+pub(crate) struct Human {
     character: Character,
     rng: Pcg64,
     going: bool,
@@ -151,7 +151,7 @@ pub(super) struct Human {
 impl Human {
     /// A driver of this `character`, with random choices from `rng`.
     #[must_use]
-    pub(super) fn new(character: Character, rng: Pcg64) -> Self {
+    pub(crate) fn new(character: Character, rng: Pcg64) -> Self {
         Self {
             character,
             rng,
@@ -163,13 +163,20 @@ impl Human {
         }
     }
 
+    /// The same driver, already on its way across.
+    #[must_use]
+    pub(crate) fn under_way(mut self) -> Self {
+        self.going = true;
+        self
+    }
+
     /// Whether it has decided to cross.
-    pub(super) fn is_going(&self) -> bool {
+    pub(crate) fn is_going(&self) -> bool {
         self.going
     }
 
     /// The acceleration (m/s²) for the step that begins now, in [−3, 3].
-    pub(super) fn accelerate(&mut self, seen: &Situation<'_>) -> f32 {
+    pub(crate) fn accelerate(&mut self, seen: &Situation<'_>) -> f32 {
         if !self.going {
             self.decide(seen);
         }

@@ -13,14 +13,14 @@ const HALF_STRETCH: f32 = 3.0;
 
 /// Speed (m/s) of a plain driver along a route, if nothing is in its way.
 #[derive(Clone, Debug)]
-pub(super) struct SpeedProfile {
+pub(crate) struct SpeedProfile {
     speeds: Vec<f32>,
 }
 
 impl SpeedProfile {
     /// The profile of `route`, at most `speed_at(s)` m/s. Cost: O(length · log points).
     #[must_use]
-    pub(super) fn new(route: &SimRoute, speed_at: impl Fn(f32) -> f32) -> Self {
+    pub(crate) fn new(route: &SimRoute, speed_at: impl Fn(f32) -> f32) -> Self {
         let mut speeds = Vec::new();
         let mut s = 0.0;
         while s <= route.length() + SPACING {
@@ -36,7 +36,7 @@ impl SpeedProfile {
 
     /// Speed (m/s) at arc length `s` (m), and its slope in 1/s; constant beyond both ends.
     #[must_use]
-    pub(super) fn at(&self, s: f32) -> (f32, f32) {
+    pub(crate) fn at(&self, s: f32) -> (f32, f32) {
         let last = self.speeds.len() - 2;
         let x = (s / SPACING).clamp(0.0, last as f32);
         let i = x as usize;
@@ -46,7 +46,7 @@ impl SpeedProfile {
 
     /// The least speed (m/s) from `from` to `to` (m).
     #[must_use]
-    pub(super) fn slowest(&self, from: f32, to: f32) -> f32 {
+    pub(crate) fn slowest(&self, from: f32, to: f32) -> f32 {
         let index = |s: f32| ((s / SPACING).max(0.0) as usize).min(self.speeds.len() - 1);
         let speeds = &self.speeds[index(from)..=index(to.max(from))];
         speeds.iter().copied().fold(f32::INFINITY, f32::min)

@@ -17,11 +17,11 @@ pub(super) enum Meeting {
 
 /// Arc lengths (m) of the vehicles' centres between which both are in each other's way.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Zone {
+pub(crate) struct Zone {
     /// Where it begins and ends on one's own route.
-    pub(super) own: (f32, f32),
+    pub(crate) own: (f32, f32),
     /// Where it begins and ends on the other's route.
-    pub(super) other: (f32, f32),
+    pub(crate) other: (f32, f32),
 }
 
 /// Routes closer than this (m) count as one lane.
@@ -45,7 +45,7 @@ fn parting(own: &SimRoute, other: &SimRoute) -> f32 {
 }
 
 /// The zone of two routes; where they run into one lane it ends when they have become one.
-pub(super) fn zone(own: &SimRoute, other: &SimRoute, merging: bool) -> Option<Zone> {
+pub(crate) fn zone(own: &SimRoute, other: &SimRoute, merging: bool) -> Option<Zone> {
     let boxes = |route: &SimRoute| -> Vec<OrientedBox> {
         samples(route.length())
             .map(|s| OrientedBox::new(route.pose(s), ROOMY))
