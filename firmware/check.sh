@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs the controller on a bare Cortex-M4F under QEMU and holds it to its bars: the host's answers bit
-# for bit, flash and RAM (the linker script enforces them, too), instructions, no panic, no allocation.
+# Runs the controller on a bare Cortex-M4F under QEMU and holds it to its bars: the host's decisions
+# bit for bit, flash and RAM (the linker script enforces them, too), instructions, no panic, no allocation.
 # Shows as well that a planted panic, a planted allocation and one changed bit are found.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -16,7 +16,7 @@ export CARGO_TERM_QUIET=true
 cargo=(cargo --config net.retry=3)
 workspace=firmware/cortex-m/Cargo.toml
 
-# The host's side: questions, answers, and the weights that both run.
+# The host's side: observations, its decisions, and the weights that both run.
 mkdir -p "$build/golden" "$build/tampered"
 "${cargo[@]}" run --release --manifest-path $workspace --target-dir "$build/host" -p cede-golden -- "$build/golden"
 
@@ -60,7 +60,7 @@ last=$(tail -c 1 "$build/golden/golden.bin" | od -An -tu1)
 printf "\\x$(printf %x $((last ^ 1)))" | dd of="$build/tampered/golden.bin" bs=1 seek=$((size - 1)) conv=notrunc status=none
 elf=$(image "$build/tampered")
 if run "$elf" >"$build/log"; then
-    fail "one changed bit in the golden answers is not found"
+    fail "one changed bit in the golden decisions is not found"
 fi
 grep -q "differ from the host's: 1$" "$build/log" || { cat "$build/log" >&2; fail "the changed bit broke something else"; }
 echo "one changed bit is found"
@@ -74,8 +74,9 @@ run "$elf" | tee "$build/log" || fail "the image failed"
 value() { sed -n "s/^$1: //p" "$build/log"; }
 # Everything in flash but the golden file: vectors, code, constants, weights, initial values.
 flash=$(arm-none-eabi-size -A "$elf" | awk '$1 ~ /^\.(vector_table|text|rodata|data|gnu\.sgstubs)$/ { sum += $2 } END { print sum }')
-ram=$(value "RAM touched, bytes")
+ram=$(value "RAM to decide, bytes")
 echo "flash with weights, bytes: $flash (of $max_flash)"
-echo "network, instructions beside the floor of 2 x 8,960 multiplications and additions: $(awk "BEGIN { printf \"%.2f\", $(value 'instructions of the network, most') / 17920 }")"
+network=$(value "instructions of the network, most")
+echo "network 8-64-64-64-4, instructions for each of its 2 x 8,960 multiplications and additions: $(awk "BEGIN { printf \"%.2f\", $network / 17920 }")"
 [ "$flash" -le $max_flash ] || fail "more than $max_flash bytes of flash"
 [ "$ram" -le $max_ram ] || fail "more than $max_ram bytes of RAM"

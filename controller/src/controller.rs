@@ -3,7 +3,7 @@
 use crate::conflict::ConflictKind;
 use crate::decision::{Decision, Outlook};
 use crate::geometry::{Footprint, Point};
-use crate::observation::{Observation, Vehicle};
+use crate::observation::{Fault, Observation, Vehicle};
 use crate::pair::{Leader, Pair, Part, Party};
 use crate::policy::Policy;
 use crate::scene::{Meeting, Scene};
@@ -73,15 +73,24 @@ impl<'w, const N: usize> Controller<'w, N> {
     /// Cost: a pass through the network for each other, and the shield's. Never panics; the
     /// acceleration is finite and within the contract's, whatever the bits of the observation.
     pub fn decide(&mut self, scene: &Scene<N>, observation: &Observation<N>) -> Decision {
-        let proposal = observation
-            .checked(scene.meetings().len())
-            .map(|seen| self.propose(scene, &seen));
-        // The shield finds the fault again and carries on with its plan.
-        let (acceleration, outlook) = proposal.unwrap_or((0.0, None));
+        // The shield finds a fault again and carries on with its plan.
+        let (acceleration, outlook) = self.ask(scene, observation).unwrap_or((0.0, None));
         Decision {
             outlook,
             ..self.shield.filter(scene, observation, acceleration)
         }
+    }
+
+    /// What the policy proposes. Not inlined, because its stack is free again when the shield needs its own.
+    #[inline(never)]
+    fn ask(
+        &mut self,
+        scene: &Scene<N>,
+        observation: &Observation<N>,
+    ) -> Result<(f32, Option<Outlook>), Fault> {
+        let seen = observation.checked(scene.meetings().len());
+        let seen = seen.as_ref().map_err(|&fault| fault)?;
+        Ok(self.propose(scene, seen))
     }
 
     fn propose(&mut self, scene: &Scene<N>, seen: &Observation<N>) -> (f32, Option<Outlook>) {

@@ -81,7 +81,18 @@ impl<'a> Mlp<'a> {
     /// Never panics; finite if inputs and weights are within the limits that `weights` enforces.
     #[must_use]
     pub fn forward(&self, inputs: &[f32]) -> [f32; OUTPUTS] {
-        let (mut a, mut b) = ([0.0; MAX_WIDTH], [0.0; MAX_WIDTH]);
+        // The stack of a small network is half that of a wide one.
+        if self.width() <= MAX_WIDTH / 2 {
+            self.pass::<{ MAX_WIDTH / 2 }>(inputs)
+        } else {
+            self.pass::<MAX_WIDTH>(inputs)
+        }
+    }
+
+    /// The pass through a network whose layers are at most `W` wide.
+    #[inline(never)]
+    fn pass<const W: usize>(&self, inputs: &[f32]) -> [f32; OUTPUTS] {
+        let (mut a, mut b) = ([0.0; W], [0.0; W]);
         let [first, second, third] = &self.hidden;
         first.relu(inputs, &mut a);
         second.relu(&a, &mut b);
@@ -109,7 +120,7 @@ impl<'a> Dense<'a> {
     }
 
     /// The first places of `y` become max(0, bias + W·x).
-    fn relu(&self, x: &[f32], y: &mut [f32; MAX_WIDTH]) {
+    fn relu(&self, x: &[f32], y: &mut [f32]) {
         let Some(y) = y.get_mut(..self.biases.len()) else {
             return;
         };

@@ -81,16 +81,17 @@ impl<const N: usize> Observation<N> {
     ///
     /// # Errors
     /// [`Fault::Ego`] or [`Fault::Other`], whichever is first.
-    pub(crate) fn checked(mut self, others: usize) -> Result<Self, Fault> {
-        self.ego = self.ego.checked().ok_or(Fault::Ego)?;
-        for (i, slot) in (0_u8..).zip(self.others.iter_mut()) {
+    pub(crate) fn checked(&self, others: usize) -> Result<Self, Fault> {
+        let mut seen = *self;
+        seen.ego = seen.ego.checked().ok_or(Fault::Ego)?;
+        for (i, slot) in (0_u8..).zip(seen.others.iter_mut()) {
             if let Some(other) = *slot {
                 let known = usize::from(i) < others;
                 let checked = other.checked().filter(|_| known);
                 *slot = Some(checked.ok_or(Fault::Other(i))?);
             }
         }
-        Ok(self)
+        Ok(seen)
     }
 }
 

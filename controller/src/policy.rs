@@ -36,30 +36,37 @@ impl<'a> Policy<'a> {
     /// ± 3 for any `pair` whatsoever.
     #[must_use]
     pub fn act(&self, pair: &Pair) -> [f32; 2] {
-        let joint = self.weights.perspective == Perspective::Joint;
-        if joint && pair.part == Part::Other {
-            let [left, ego] = self.drive(&pair.swapped());
-            return [ego, left];
-        }
-        self.drive(pair)
-    }
-
-    fn drive(&self, pair: &Pair) -> [f32; 2] {
         let inputs = self.inputs(pair);
         let inputs = inputs.get(..self.weights.features.count()).unwrap_or(&[]);
-        let [mean, other_mean, ..] = self.weights.network.forward(inputs);
-        [mean, other_mean].map(|mean| MAX_ACCELERATION * libm::tanhf(mean))
+        let [first, second, ..] = self.weights.network.forward(inputs);
+        let [first, second] = [first, second].map(|mean| MAX_ACCELERATION * libm::tanhf(mean));
+        if self.swaps(pair) {
+            [second, first]
+        } else {
+            [first, second]
+        }
     }
 
-    /// The network's inputs for `pair` as the ego of a [`Perspective::Ego`] policy or the left-turner of a
-    /// [`Perspective::Joint`] one sees it: the normalised features, each within ± [`LIMIT`], then zeros.
+    /// The network's inputs for `pair`: the normalised features, each within ± [`LIMIT`], then zeros. Those of
+    /// a [`Perspective::Joint`] policy are the left-turner's, whoever the ego is.
+    // Not inlined, because its stack is free again when the network needs its own.
     #[must_use]
+    #[inline(never)]
     pub fn inputs(&self, pair: &Pair) -> [f32; MAX_FEATURES] {
-        let mut inputs = self.weights.features.of(pair);
+        let mut inputs = if self.swaps(pair) {
+            self.weights.features.of(&pair.swapped())
+        } else {
+            self.weights.features.of(pair)
+        };
         for (input, (centre, scale)) in inputs.iter_mut().zip(self.weights.normalisation()) {
             *input = within((*input - centre) * scale, LIMIT);
         }
         inputs
+    }
+
+    /// Whether the network sees the other first.
+    fn swaps(&self, pair: &Pair) -> bool {
+        self.weights.perspective == Perspective::Joint && pair.part == Part::Other
     }
 }
 

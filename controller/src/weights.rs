@@ -51,10 +51,9 @@ pub struct Weights<'a> {
     pub features: FeatureSet,
     /// Whose commands it gives.
     pub perspective: Perspective,
-    /// SHA-256 of what the network was made from.
-    pub provenance: [u8; 32],
     /// The network.
     pub network: Mlp<'a>,
+    provenance: &'a [u32; 8],
     centres: &'a [u32],
     scales: &'a [u32],
 }
@@ -128,6 +127,16 @@ impl<'a> Weights<'a> {
             centres,
             scales,
         })
+    }
+
+    /// SHA-256 of what the network was made from.
+    #[must_use]
+    pub fn provenance(&self) -> [u8; 32] {
+        let mut bytes = [0; 32];
+        for (place, word) in bytes.as_chunks_mut::<4>().0.iter_mut().zip(self.provenance) {
+            *place = word.to_le_bytes();
+        }
+        bytes
     }
 
     /// Centre and scale of each feature: the network sees (feature − centre) · scale.
@@ -260,15 +269,15 @@ macro_rules! include_weights {
     }};
 }
 
-struct Header {
+struct Header<'a> {
     features: FeatureSet,
     perspective: Perspective,
     width: usize,
-    provenance: [u8; 32],
+    provenance: &'a [u32; 8],
 }
 
-impl Header {
-    fn parse(words: &[u32; HEADER]) -> Result<Self, WeightsError> {
+impl<'a> Header<'a> {
+    fn parse(words: &'a [u32; HEADER]) -> Result<Self, WeightsError> {
         let [
             _,
             version,
@@ -288,7 +297,7 @@ impl Header {
             features: feature_set(*features).ok_or(WeightsError::Unknown)?,
             perspective: perspective_of(*perspective).ok_or(WeightsError::Unknown)?,
             width,
-            provenance: bytes(provenance),
+            provenance,
         };
         let known = size(header.features.count()) == *inputs && size(OUTPUTS) == *outputs;
         if known && width <= MAX_WIDTH {
@@ -322,14 +331,6 @@ fn crc32(words: &[u32]) -> u32 {
 
 fn size(n: usize) -> u32 {
     u32::try_from(n).unwrap_or(u32::MAX)
-}
-
-fn bytes(words: &[u32; 8]) -> [u8; 32] {
-    let mut bytes = [0; 32];
-    for (place, word) in bytes.as_chunks_mut::<4>().0.iter_mut().zip(words) {
-        *place = word.to_le_bytes();
-    }
-    bytes
 }
 
 fn feature_set(code: u32) -> Option<FeatureSet> {
@@ -393,7 +394,7 @@ mod tests {
                 assert_eq!(weights.features, features);
                 assert_eq!(weights.perspective, perspective);
                 assert_eq!(weights.network.width(), 32);
-                assert_eq!(weights.provenance[31], 31);
+                assert_eq!(weights.provenance()[31], 31);
                 assert!(weights.normalisation().all(|n| n == (1.0, 0.1)));
                 assert_eq!(weights.normalisation().count(), features.count());
             }

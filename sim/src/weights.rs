@@ -84,7 +84,7 @@ mod tests {
         let path = folder.path().join("driver.cede");
         let mut bytes: Vec<u8> = file().iter().flat_map(|w| w.to_le_bytes()).collect();
         std::fs::write(&path, &bytes).unwrap();
-        assert_eq!(load(&path).unwrap().weights().provenance, [7; 32]);
+        assert_eq!(load(&path).unwrap().weights().provenance(), [7; 32]);
 
         bytes[100] ^= 4;
         std::fs::write(&path, &bytes).unwrap();

@@ -61,23 +61,29 @@ pub(crate) struct Hazards {
 }
 
 impl Hazards {
-    /// The hazards of what is seen, with the rule of precedence applied.
+    /// No hazards.
+    pub(crate) const fn new() -> Self {
+        Self { sorted: Vec::new() }
+    }
+
+    /// Adds the hazards of what is seen, with the rule of precedence applied. In place, because they
+    /// are the largest thing on the stack.
     ///
     /// Cost: O(zones²) for the sorting, at most 24². Never panics.
-    pub(crate) fn new<const N: usize, R: Rules>(
+    pub(crate) fn add<const N: usize, R: Rules>(
+        &mut self,
         contract: &Contract,
         scene: &Scene<N>,
         seen: &Observation<N>,
         claims: Claims,
-    ) -> Self {
-        let mut hazards = Self { sorted: Vec::new() };
+    ) {
         let pairs = scene.meetings().iter().zip(seen.others.iter());
         for (number, (meeting, other)) in (0_u8..).zip(pairs) {
             let Some(other) = other else { continue };
             for zone in meeting.zones() {
                 if let Some(hazard) = hazard::<R>(contract, zone, &seen.ego, other) {
                     let claimed = claims.has(number);
-                    hazards.insert::<R>(Hazard {
+                    self.insert::<R>(Hazard {
                         other: number,
                         passage: if claimed {
                             granted(contract, hazard.passage, zone, other)
@@ -89,8 +95,7 @@ impl Hazards {
                 }
             }
         }
-        hazards.look_beyond();
-        hazards
+        self.look_beyond();
     }
 
     pub(crate) fn iter(&self) -> impl Iterator<Item = &Hazard> {

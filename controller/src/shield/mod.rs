@@ -88,6 +88,8 @@ impl<const N: usize, R: Rules> Shield<N, R> {
     ///
     /// Cost: at most 14 candidates × one clearing time for each zone. Never panics; the acceleration is
     /// finite and within the contract's, whatever the bits of the observation and the proposal.
+    // Not inlined, so that its stack is not on top of the policy's.
+    #[inline(never)]
     pub fn filter(
         &mut self,
         scene: &Scene<N>,
@@ -96,11 +98,11 @@ impl<const N: usize, R: Rules> Shield<N, R> {
     ) -> Decision {
         self.memory.tick();
         self.arrivals.tick();
-        let decision = match observation.checked(scene.meetings().len()) {
-            Ok(seen) => self.judge(scene, &seen, proposal),
+        let decision = match &observation.checked(scene.meetings().len()) {
+            Ok(seen) => self.judge(scene, seen, proposal),
             Err(fault) => Decision {
                 acceleration: self.carry_on(),
-                cause: Cause::Fallback(fault),
+                cause: Cause::Fallback(*fault),
                 margin: 0.0,
                 breach: None,
                 outlook: None,
@@ -127,7 +129,8 @@ impl<const N: usize, R: Rules> Shield<N, R> {
             return Err(Fault::Proposal);
         }
         let seen = observation.checked(scene.meetings().len())?;
-        let hazards = Hazards::new::<N, R>(&self.contract, scene, &seen, Claims::default());
+        let mut hazards = Hazards::new();
+        hazards.add::<N, R>(&self.contract, scene, &seen, Claims::default());
         let speed = seen.ego.speed;
         let acceleration = self.allowed(speed, acceleration);
         let verdict = check::<R>(&self.contract, &hazards, speed, [previous; 2], acceleration);
@@ -140,7 +143,8 @@ impl<const N: usize, R: Rules> Shield<N, R> {
             Some(rule) => self.arrivals.note(rule, scene, seen),
             None => Claims::default(),
         };
-        let hazards = Hazards::new::<N, R>(&self.contract, scene, seen, claims);
+        let mut hazards = Hazards::new();
+        hazards.add::<N, R>(&self.contract, scene, seen, claims);
         let speed = seen.ego.speed;
         let wanted = self.allowed(speed, proposal);
         let in_effect = self.memory.in_effect(&self.contract);

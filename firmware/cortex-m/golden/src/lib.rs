@@ -1,58 +1,132 @@
-//! Golden cases: what a bare-metal image is told, and what it must answer, bit for bit.
+//! The golden file: scenes, what is observed in them, and what the host decides, as 32-bit words.
+//!
+//! Scene after scene: the number of others and of steps, a route for each vehicle with the ego's first
+//! ([`ROUTE`] words each), then for each step the observation ([`QUESTION`] words) and the decision
+//! ([`ANSWER`] words). Host and image read it by this code. Numbers are bit patterns, so that what is
+//! no number is asked about as well.
 #![no_std]
 #![forbid(unsafe_code)]
 
+mod answer;
+
+pub use answer::{ANSWER, answer};
+
 use cede_controller::{
-    ConflictKind, Footprint, Pair, Part, Party, Point, Policy, Pose, RightOfWay,
+    Contract, Controller, Footprint, Observation, Part, Path, Point, Policy, Pose, RightOfWay,
+    Route, Scene, Vehicle,
 };
+use heapless::Vec;
 
-/// Words of a case: a pair of vehicles, then the answer.
-pub const WORDS: usize = QUESTION + ANSWER;
-/// Words that describe the pair: `f32` bit patterns, the last chooses the discrete fields.
-pub const QUESTION: usize = 18;
-/// Words of the answer: the two accelerations.
-pub const ANSWER: usize = 2;
+/// Others in a scene, at most.
+pub const OTHERS: usize = 8;
+/// Points of a route, at most.
+pub const POINTS: usize = 8;
+/// Words of a route: length and width of its vehicle, who goes first (0 unsettled, 1 the ego, 2 the
+/// other), the number of points, and the points.
+pub const ROUTE: usize = 4 + 2 * POINTS;
+/// Words of a vehicle: whether it is there, s, speed, x, y, and the direction's x and y.
+pub const VEHICLE: usize = 7;
+/// Words of an observation: the ego and the others.
+pub const QUESTION: usize = VEHICLE * (1 + OTHERS);
 
-/// What `policy` answers to `question`, as bit patterns.
-#[must_use]
-pub fn answer(policy: &Policy<'_>, question: &[u32; QUESTION]) -> [u32; ANSWER] {
-    policy.act(&pair(question)).map(f32::to_bits)
+/// A scene of the golden file.
+#[derive(Clone, Copy, Debug)]
+pub struct Golden<'a> {
+    routes: &'a [[u32; ROUTE]],
+    /// Observation and decision of each step.
+    pub steps: &'a [[u32; QUESTION + ANSWER]],
 }
 
-/// The pair that `question` describes.
-#[must_use]
-pub fn pair(question: &[u32; QUESTION]) -> Pair {
-    let [ego @ .., svo, choices] = question;
-    let (ego, other) = ego.split_at(8);
-    Pair {
-        ego: party(ego),
-        other: party(other),
-        kind: [ConflictKind::Crossing, ConflictKind::Merging][usize::from(choices & 1 != 0)],
-        right_of_way: if choices & 2 != 0 {
-            RightOfWay::Ego
-        } else {
-            RightOfWay::Unsettled
-        },
-        part: if choices & 4 != 0 {
-            Part::Left
-        } else {
-            Part::Other
-        },
-        last_svo: f32::from_bits(*svo),
+impl<'a> Golden<'a> {
+    /// Takes a scene from the front of `words`; `None` at their end.
+    pub fn next(words: &mut &'a [u32]) -> Option<Self> {
+        let (&[others, steps], rest) = words.split_first_chunk()?;
+        let (routes, rest) = rest.split_at_checked((usize::try_from(others).ok()? + 1) * ROUTE)?;
+        let steps = usize::try_from(steps).ok()? * (QUESTION + ANSWER);
+        let (steps, rest) = rest.split_at_checked(steps)?;
+        *words = rest;
+        Some(Self {
+            routes: routes.as_chunks().0,
+            steps: steps.as_chunks().0,
+        })
+    }
+
+    /// The scene; `None` if the routes make none.
+    #[must_use]
+    pub fn scene(&self) -> Option<Scene<OTHERS>> {
+        let (mine, theirs) = self.routes.split_first()?;
+        let ego = route(mine)?;
+        let mut routes = Vec::<Route<POINTS>, OTHERS>::new();
+        for words in theirs {
+            routes.push(route(words)?).ok()?;
+        }
+        let mut others = Vec::<Path<'_, POINTS>, OTHERS>::new();
+        for (words, route) in theirs.iter().zip(&routes) {
+            others.push(path(words, route)).ok()?;
+        }
+        let mut scene = Scene::new(path(mine, &ego), &others).ok();
+        for (i, [_, _, right_of_way, ..]) in theirs.iter().enumerate() {
+            let right_of_way = match right_of_way {
+                1 => RightOfWay::Ego,
+                2 => RightOfWay::Other,
+                _ => RightOfWay::Unsettled,
+            };
+            scene.as_mut()?.set_right_of_way(i, right_of_way);
+        }
+        scene
     }
 }
 
-fn party(words: &[u32]) -> Party {
-    let at = |i: usize| words.get(i).map_or(0.0, |&word| f32::from_bits(word));
-    Party {
+/// The controller that is asked: within the worst-case contract, as the left-turner.
+#[must_use]
+#[inline(never)]
+pub fn controller<'w>(policy: &Policy<'w>) -> Option<Controller<'w, OTHERS>> {
+    Controller::new(*policy, Contract::WORST_CASE, Part::Left).ok()
+}
+
+fn route(words: &[u32; ROUTE]) -> Option<Route<POINTS>> {
+    let [_, _, _, count, points @ ..] = words;
+    let points = points.as_chunks().0;
+    let points = points.get(..usize::try_from(*count).ok()?)?;
+    Route::new(points.iter().map(|[x, y]| point(*x, *y))).ok()
+}
+
+fn path<'a>(words: &[u32; ROUTE], route: &'a Route<POINTS>) -> Path<'a, POINTS> {
+    let [length, width, ..] = words.map(f32::from_bits);
+    Path {
+        route,
+        footprint: Footprint { length, width },
+    }
+}
+
+/// What the words of a step observe. Not inlined: it would take its room twice.
+#[must_use]
+#[inline(never)]
+pub fn observation(words: &[u32; QUESTION]) -> Observation<OTHERS> {
+    let nobody = [0; VEHICLE];
+    let (ego, others) = words.as_chunks().0.split_first().unwrap_or((&nobody, &[]));
+    let mut observation = Observation {
+        ego: vehicle(ego),
+        others: [None; OTHERS],
+    };
+    for (place, words) in observation.others.iter_mut().zip(others) {
+        *place = (words[0] != 0).then(|| vehicle(words));
+    }
+    observation
+}
+
+fn vehicle(words: &[u32; VEHICLE]) -> Vehicle {
+    let [_, s, speed, x, y, dx, dy] = *words;
+    Vehicle {
+        s: f32::from_bits(s),
+        speed: f32::from_bits(speed),
         pose: Pose {
-            position: Point::new(at(0), at(1)),
-            direction: Point::new(at(2), at(3)),
+            position: point(x, y),
+            direction: point(dx, dy),
         },
-        exit: Point::new(at(4), at(5)),
-        speed: at(6),
-        distance: at(7),
-        footprint: Footprint::PAPER,
-        leader: None,
     }
+}
+
+fn point(x: u32, y: u32) -> Point {
+    Point::new(f32::from_bits(x), f32::from_bits(y))
 }

@@ -1,5 +1,5 @@
-//! Cede on a bare Cortex-M, under QEMU: answers every golden question, compares with the host bit for
-//! bit, and counts instructions and RAM. Exit status 0 only if all answers are the same.
+//! Cede on a bare Cortex-M, under QEMU: decides on every golden observation, compares with the host
+//! bit for bit, and counts instructions and RAM. Exit status 0 only if all decisions are the same.
 //!
 //! No `core::fmt` and nothing that can panic: `firmware/check.sh` looks at the symbols.
 #![no_std]
@@ -10,9 +10,11 @@ mod counter;
 mod stack;
 
 use cede_controller::weights::Aligned;
-use cede_controller::{Policy, include_weights};
+use cede_controller::{Controller, Decision, Mlp, Policy, Scene, include_weights};
+use cede_golden::{Golden, OTHERS, QUESTION, answer, controller, observation};
 use cortex_m_rt::entry;
 use cortex_m_semihosting::debug;
+use counter::{Counter, Range};
 
 const GOLDEN_BYTES: &[u8] = include_bytes!(concat!(env!("CEDE_GOLDEN"), "/golden.bin"));
 #[unsafe(link_section = ".golden")]
@@ -30,48 +32,125 @@ fn main() -> ! {
     loop {}
 }
 
+/// What is measured on the way.
+struct Tally {
+    counter: Counter,
+    network: Range,
+    decision: Range,
+    /// Bytes of RAM, statics included, that preparing a scene and deciding need.
+    preparing: u32,
+    deciding: u32,
+    decisions: u32,
+    wrong: u32,
+}
+
 fn run() -> Result<(), &'static str> {
-    let mut counter = counter::Counter::take().ok_or("no SysTick")?;
     let weights = include_weights!(concat!(env!("CEDE_GOLDEN"), "/policy.cede"));
     let policy = Policy::new(weights).map_err(|_| "the weights file is damaged")?;
-    planted::panic(weights);
+    planted::fault(weights);
 
-    let (mut network, mut decision) = (counter::Range::EMPTY, counter::Range::EMPTY);
-    let (mut cases, mut wrong) = (0, 0);
-    for case in GOLDEN.0.as_chunks::<{ cede_golden::WORDS }>().0 {
-        let Some((question, expected)) = case.split_first_chunk() else {
-            continue;
-        };
-        let inputs = policy.inputs(&cede_golden::pair(question));
-        let (_, spent) = counter.count(|| policy.weights().network.forward(&inputs));
-        network.add(spent);
-        let (answer, spent) = counter.count(|| cede_golden::answer(&policy, question));
-        decision.add(spent);
-        cases += 1;
-        wrong += u32::from(answer != *expected);
+    let mut counter = Counter::take().ok_or("no SysTick")?;
+    let mut tally = Tally {
+        network: network(&mut counter, weights).ok_or("the weights file is too short")?,
+        counter,
+        decision: Range::EMPTY,
+        preparing: 0,
+        deciding: 0,
+        decisions: 0,
+        wrong: 0,
+    };
+    let mut words: &[u32] = &GOLDEN.0;
+    while let Some(golden) = Golden::next(&mut words) {
+        tally
+            .drive(&policy, &golden)
+            .ok_or("a scene that is none")?;
     }
-    console::line("cases", Some(cases));
-    console::line("answers that differ from the host's", Some(wrong));
-    console::line("instructions of the network, least", Some(network.least));
-    console::line("instructions of the network, most", Some(network.most));
-    console::line("instructions of a decision, least", Some(decision.least));
-    console::line("instructions of a decision, most", Some(decision.most));
-    console::line("RAM touched, bytes", Some(stack::touched()));
-    if cases == 0 {
-        Err("no golden cases")
-    } else if wrong > 0 {
-        Err("the answers differ from the host's")
-    } else if network.least != network.most {
-        Err("the network's instructions depend on its inputs")
-    } else {
-        Ok(())
+    tally.report();
+    tally.verdict()
+}
+
+impl Tally {
+    fn drive(&mut self, policy: &Policy<'_>, golden: &Golden<'_>) -> Option<()> {
+        stack::paint();
+        let scene = scene(golden);
+        let scene = scene.as_ref()?;
+        self.preparing = self.preparing.max(stack::touched());
+        let mut controller = controller(policy);
+        let controller = controller.as_mut()?;
+        stack::paint();
+        for step in golden.steps {
+            let (question, expected) = step.split_first_chunk()?;
+            let (decision, count) = decide(&mut self.counter, controller, scene, question);
+            self.decision.add(count);
+            self.decisions += 1;
+            self.wrong += u32::from(answer(&decision) != *expected);
+        }
+        self.deciding = self.deciding.max(stack::touched());
+        Some(())
     }
+
+    fn report(&self) {
+        for (what, number) in [
+            ("decisions", self.decisions),
+            ("decisions that differ from the host's", self.wrong),
+            ("instructions of the network, least", self.network.least),
+            ("instructions of the network, most", self.network.most),
+            ("instructions of a decision, least", self.decision.least),
+            ("instructions of a decision, most", self.decision.most),
+            ("RAM to prepare a scene, bytes", self.preparing),
+            ("RAM to decide, bytes", self.deciding),
+        ] {
+            console::line(what, Some(number));
+        }
+    }
+
+    fn verdict(&self) -> Result<(), &'static str> {
+        if self.decisions == 0 {
+            Err("no golden decisions")
+        } else if self.wrong > 0 {
+            Err("the decisions differ from the host's")
+        } else if self.network.least != self.network.most {
+            Err("the network's instructions depend on its inputs")
+        } else {
+            Ok(())
+        }
+    }
+}
+
+/// Instructions of a network of the paper's shape, 8-64-64-64-4, over any weights and any inputs.
+#[inline(never)]
+fn network(counter: &mut Counter, weights: &[u32]) -> Option<Range> {
+    let network = Mlp::new(weights.get(16..16 + Mlp::words(8, 64))?, 8, 64)?;
+    let mut range = Range::EMPTY;
+    for words in GOLDEN.0.as_chunks::<8>().0.iter().take(1000) {
+        let inputs = words.map(f32::from_bits);
+        range.add(counter.count(|| network.forward(&inputs)).1);
+    }
+    Some(range)
+}
+
+/// Not inlined, so that its frame is gone when a decision is made.
+#[inline(never)]
+fn scene(golden: &Golden<'_>) -> Option<Scene<OTHERS>> {
+    golden.scene()
+}
+
+/// Not inlined, so that the frame is the same for every step.
+#[inline(never)]
+fn decide(
+    counter: &mut Counter,
+    controller: &mut Controller<'_, OTHERS>,
+    scene: &Scene<OTHERS>,
+    question: &[u32; QUESTION],
+) -> (Decision, u32) {
+    let observation = observation(question);
+    counter.count(|| controller.decide(scene, &observation))
 }
 
 /// Faults on purpose, by feature, that the checks on the linked image must find.
 mod planted {
-    /// A panic that the compiler cannot rule out.
-    pub(crate) fn panic(words: &[u32]) {
+    /// A panic that the compiler cannot rule out, or what stands for an allocation.
+    pub(crate) fn fault(words: &[u32]) {
         #[cfg(feature = "planted-panic")]
         core::hint::black_box(words[core::hint::black_box(1)]);
         #[cfg(feature = "planted-allocation")]

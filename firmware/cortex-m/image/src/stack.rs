@@ -1,4 +1,4 @@
-//! How much RAM was ever touched: the start-up code paints all of it.
+//! How much RAM was touched since it was painted; the start-up code paints all of it first.
 
 /// What `cortex-m-rt` paints the stack with.
 const PAINT: u32 = 0xcccc_cccc;
@@ -8,6 +8,22 @@ unsafe extern "C" {
     static _stack_start: u32;
     static __sdata: u32;
 }
+
+/// Paints what lies below the caller's stack frame anew.
+#[inline(never)]
+pub(crate) fn paint() {
+    let end = (&raw const _stack_end).cast_mut();
+    let mut word = (cortex_m::register::msp::read() as *mut u32).wrapping_sub(MARGIN);
+    // SAFETY: the words between the end of the stack and its pointer are nobody's, and the margin
+    // keeps clear of what this function itself may have there.
+    while word > end {
+        word = word.wrapping_sub(1);
+        unsafe { word.write_volatile(PAINT) };
+    }
+}
+
+/// Words below the stack pointer that are not painted.
+const MARGIN: usize = 8;
 
 /// Bytes of RAM: statics, and the stack from its start down to the deepest word that is no longer paint.
 pub(crate) fn touched() -> u32 {

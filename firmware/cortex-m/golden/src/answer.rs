@@ -1,0 +1,70 @@
+//! A decision as words: every bit of it.
+
+use cede_controller::{Action, Breach, Cause, Decision, Fault, Intervention, Outlook, Reason};
+
+/// Words of a decision.
+pub const ANSWER: usize = 11;
+
+/// Every field of `decision`, as bit patterns.
+#[must_use]
+pub fn answer(decision: &Decision) -> [u32; ANSWER] {
+    let [cause, who, first, second] = match decision.cause {
+        Cause::Policy => [0; 4],
+        Cause::Shielded(intervention) => shielded(intervention),
+        Cause::Fallback(fault) => match fault {
+            Fault::Ego => [10, 0, 0, 0],
+            Fault::Other(other) => [11, other.into(), 0, 0],
+            Fault::Proposal => [12, 0, 0, 0],
+            Fault::Unverified => [13, 0, 0, 0],
+        },
+    };
+    let [breach, breaker] = match decision.breach {
+        None => [0, 0],
+        Some(Breach::Ego) => [1, 0],
+        Some(Breach::Other(other)) => [2, other.into()],
+    };
+    let [asked, svo, expected] = match decision.outlook {
+        None => [0; 3],
+        Some(Outlook {
+            other,
+            svo,
+            acceleration,
+        }) => [1 + u32::from(other), svo.to_bits(), acceleration.to_bits()],
+    };
+    let (acceleration, margin) = (decision.acceleration.to_bits(), decision.margin.to_bits());
+    [
+        acceleration,
+        margin,
+        cause,
+        who,
+        first,
+        second,
+        breach,
+        breaker,
+        asked,
+        svo,
+        expected,
+    ]
+}
+
+fn shielded(Intervention { action, reason }: Intervention) -> [u32; 4] {
+    let action = match action {
+        Action::Nearest => 1,
+        Action::Remembered => 4,
+    };
+    let (reason, other, numbers) = match reason {
+        Reason::Arrival {
+            other,
+            arrives,
+            clears,
+        } => (0, other, [arrives, clears]),
+        Reason::Entry { other, gap, needs } => (1, other, [gap, needs]),
+        Reason::Stop {
+            other,
+            available,
+            needs,
+        } => (2, other, [available, needs]),
+    };
+    let [first, second] = numbers.map(f32::to_bits);
+    [action + reason, other.into(), first, second]
+}
