@@ -5,6 +5,7 @@
 //! network's *real-number semantics*: the weights' exact values, no rounding anywhere.
 
 mod attack;
+mod bounder;
 mod certificate;
 pub mod check;
 mod forward;
@@ -22,6 +23,7 @@ mod search;
 mod tests;
 pub mod vnnlib;
 
+pub(crate) use bounder::{Bounder, Feature, Worker};
 pub use certificate::{Certificate, CertificateError};
 pub use model::{Activation, Evaluation, Layer, Matrix, ModelError, Network};
 pub use property::{Conjunction, Halfspace, InputBox, Property, Query};

@@ -2,15 +2,18 @@
 
 mod check;
 mod network;
+mod policy;
 
 use crate::failure::Failure;
 use clap::Subcommand;
 
-/// Proves or refutes properties; exit code 0 whatever the answer, as long as there is one.
+/// Proves or refutes properties, and checks proofs.
 #[derive(Subcommand)]
 pub(crate) enum Verify {
     /// Does an input of the property's box give an unsafe output of the network?
     Network(network::Network),
+    /// Does the policy have the properties that are claimed of it?
+    Policy(policy::Policy),
     /// Checks a certificate with code that shares nothing with the prover's.
     Check(check::Check),
 }
@@ -20,6 +23,7 @@ impl Verify {
     pub(crate) fn run(self) -> Result<(), Failure> {
         match self {
             Self::Network(network) => network.run(),
+            Self::Policy(policy) => policy.run(),
             Self::Check(check) => check.run(),
         }
     }

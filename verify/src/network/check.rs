@@ -7,6 +7,7 @@
 //! positive bound. Where rounding or a looser bound leaves a recorded refutation open, it halves
 //! the box itself, a few times at most.
 
+use super::bounder::Feature;
 use super::model::{Activation, Layer, Network};
 use super::proof::{Cell, Proof, Refutation, Split};
 use super::property::{Conjunction, InputBox, Query};
@@ -54,9 +55,22 @@ const HALVINGS: u32 = 6;
 /// # Errors
 /// The first region that does not convince.
 pub fn check(network: &Network, query: &Query, proof: &Proof) -> Result<usize, CheckError> {
+    check_behind(network, None, query, proof)
+}
+
+/// What the network is given on a box of other variables, as linear functions of those.
+pub(crate) type Front<'a> = &'a dyn Fn(&InputBox) -> Vec<Feature>;
+
+/// As [`check`], for a network whose inputs are features of the query's variables.
+pub(crate) fn check_behind(
+    network: &Network,
+    front: Option<Front<'_>>,
+    query: &Query,
+    proof: &Proof,
+) -> Result<usize, CheckError> {
     let mut pending = vec![Region {
         cell: 0,
-        bounds: Bounds::new(network, query.region.clone()),
+        bounds: Bounds::new(network, front, query.region.clone()),
         phases: Vec::new(),
         open: (0_u32..).take(query.unsafe_set.len()).collect(),
     }];
@@ -86,14 +100,14 @@ pub fn check(network: &Network, query: &Query, proof: &Proof) -> Result<usize, C
 }
 
 #[derive(Clone)]
-struct Region {
+struct Region<'a> {
     cell: usize,
-    bounds: Bounds,
+    bounds: Bounds<'a>,
     phases: Vec<(usize, bool)>,
     open: Vec<u32>,
 }
 
-impl Region {
+impl Region<'_> {
     /// Confirms what the cell claims; true if nothing is left open.
     fn settle(
         &mut self,
@@ -290,15 +304,18 @@ impl Form {
 
 /// A box and bounds of all pre-activations, layer by layer.
 #[derive(Clone)]
-struct Bounds {
+struct Bounds<'a> {
     region: InputBox,
+    front: Option<Front<'a>>,
+    /// What the front gives on the region.
+    features: Vec<Feature>,
     layers: Vec<Vec<(f64, f64)>>,
     /// Which bounds are assumptions about a ReLU's phase, and stay.
     first: Vec<Option<usize>>,
 }
 
-impl Bounds {
-    fn new(network: &Network, region: InputBox) -> Self {
+impl<'a> Bounds<'a> {
+    fn new(network: &Network, front: Option<Front<'a>>, region: InputBox) -> Self {
         let mut count = 0;
         let first = network.layers().iter().map(|layer| {
             let start = (layer.activation != Activation::Identity).then_some(count);
@@ -309,6 +326,8 @@ impl Bounds {
         let unbounded = |layer: &Layer| vec![(f64::NEG_INFINITY, f64::INFINITY); layer.outputs()];
         Self {
             region,
+            front,
+            features: Vec::new(),
             layers: network.layers().iter().map(unbounded).collect(),
             first,
         }
@@ -333,6 +352,9 @@ impl Bounds {
 
     /// Tightens all bounds to the box; false if they contradict each other.
     fn tighten(&mut self, network: &Network) -> bool {
+        self.features = self
+            .front
+            .map_or_else(Vec::new, |front| front(&self.region));
         for (index, layer) in network.layers().iter().enumerate() {
             for i in 0..layer.outputs() {
                 let (l, u) = self.layers[index][i];
@@ -369,7 +391,10 @@ impl Bounds {
     /// Largest absolute value of input j of layer `index`.
     fn magnitude(&self, network: &Network, index: usize, j: usize) -> f64 {
         if index == 0 {
-            return self.region.lower[j].abs().max(self.region.upper[j].abs());
+            return match self.front {
+                Some(_) => self.features[j].magnitude(&self.region),
+                None => self.region.lower[j].abs().max(self.region.upper[j].abs()),
+            };
         }
         let (l, u) = self.layers[index - 1][j];
         match network.layers()[index - 1].activation {
@@ -435,6 +460,9 @@ impl Bounds {
             before.error += terms * reach.sum::<f64>() + TINY;
             form = before;
         }
+        if self.front.is_some() {
+            form = self.before_features(&form);
+        }
         let mut least = form.constant;
         let mut size = least.abs();
         for ((&c, &lo), &hi) in form
@@ -449,6 +477,26 @@ impl Bounds {
         }
         let terms = form.coefficients.len() as f64 * ULP;
         least - (form.error + terms * size) * (1.0 + 1e-9) - TINY
+    }
+}
+
+impl Bounds<'_> {
+    /// The form over the variables that bounds a form over the features from below.
+    fn before_features(&self, form: &Form) -> Form {
+        let mut before = Form::zero(self.region.lower.len());
+        before.error = form.error;
+        before.constant = form.constant;
+        let mut sizes = form.constant.abs();
+        for (feature, &c) in self.features.iter().zip(&form.coefficients) {
+            before.add(&feature.slopes, feature.constant, c);
+            before.constant -= c.abs() * feature.radius;
+            sizes += c.abs() * (feature.magnitude(&self.region) + feature.radius);
+        }
+        let sides = self.region.lower.iter().zip(&self.region.upper);
+        let reach = before.doubts.iter().zip(sides);
+        let doubt: f64 = reach.map(|(d, (lo, hi))| d * lo.abs().max(hi.abs())).sum();
+        before.error += doubt * (1.0 + 1e-9) + self.features.len() as f64 * ULP * sizes;
+        before
     }
 }
 

@@ -1,5 +1,6 @@
 //! Sound bounds for every neuron and for the atoms of a query on a box, layer by layer.
 
+use super::bounder::Feature;
 use super::kernel::{LANES, Lane, compose, padded};
 use super::model::{Activation, Network};
 use super::property::{Halfspace, InputBox};
@@ -126,6 +127,7 @@ impl Workspace {
         &mut self,
         network: &Prepared,
         region: &InputBox,
+        features: &[Feature],
         bounds: &mut [Interval],
         phases: &[Phase],
         atoms: &[usize],
@@ -134,7 +136,13 @@ impl Workspace {
         self.symbols.restart(&region.lower, &region.upper);
         self.shares.clear();
         self.direct.clear();
-        self.direct.extend((0..network.inputs).map(|i| (i, i + 1)));
+        if features.is_empty() {
+            self.direct.extend((0..network.inputs).map(|i| (i, i + 1)));
+        }
+        for (input, feature) in features.iter().enumerate() {
+            let column = self.push_feature(region, feature);
+            self.direct.push((input, column));
+        }
         self.active.clear();
         for (index, layer) in network.layers.iter().enumerate() {
             std::mem::swap(&mut self.forms, &mut self.previous);
@@ -163,6 +171,29 @@ impl Workspace {
             self.release(layer, own, phases, network.enclose);
         }
         Ok(())
+    }
+
+    /// Adds an input of the network that is a feature of the region's variables; gives its column.
+    fn push_feature(&mut self, region: &InputBox, feature: &Feature) -> usize {
+        let row = std::iter::once(feature.constant).chain(feature.slopes.iter().copied());
+        let size = row
+            .clone()
+            .zip(self.symbols.most())
+            .map(|(c, most)| c.abs() * most)
+            .sum::<f64>();
+        let sides = region.lower.iter().zip(&region.upper);
+        let reach = feature.slopes.iter().zip(sides);
+        let start = self.shares.len();
+        self.shares
+            .extend(reach.map(|(s, (lo, hi))| s.abs() * (hi - lo)));
+        normalise(&mut self.shares[start..]);
+        self.symbols.push(
+            FEATURE,
+            row,
+            (0.0, size * SPARE),
+            feature.linear_range(region),
+            feature.lines(region),
+        )
     }
 
     /// The forms of the wanted neurons of a layer from those of the layer before.
@@ -278,11 +309,7 @@ impl Workspace {
                         * (region.upper[i] - region.lower[i])
                 };
                 self.shares.extend((0..inputs).map(reach));
-                let total: f64 = self.shares[start..]
-                    .iter()
-                    .sum::<f64>()
-                    .max(f64::MIN_POSITIVE);
-                self.shares[start..].iter_mut().for_each(|s| *s /= total);
+                normalise(&mut self.shares[start..]);
             }
         }
         // Shares are kept for those that stay unstable only.
@@ -379,6 +406,15 @@ impl Workspace {
         );
         (self.forms.errors[k], self.forms.sizes[k])
     }
+}
+
+/// Stands for the neuron of a symbol that is none.
+const FEATURE: usize = usize::MAX;
+
+/// Scales the numbers so that they sum to 1, unless all are zero.
+fn normalise(shares: &mut [f64]) {
+    let total: f64 = shares.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+    shares.iter_mut().for_each(|share| *share /= total);
 }
 
 /// Whether a ReLU with these bounds is neither always on nor always off.

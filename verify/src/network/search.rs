@@ -254,6 +254,7 @@ impl<'a> Worker<'a> {
             .bound(
                 &problem.prepared,
                 &node.region,
+                &[],
                 &mut node.bounds,
                 &node.phases,
                 &atoms,

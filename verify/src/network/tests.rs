@@ -213,7 +213,7 @@ fn worst_escape(spoil: impl Fn(&mut Network), enclose: Option<fn(f64, f64) -> Li
             prepared.enclose = enclose.unwrap_or(prepared.enclose);
             let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); prepared.neurons];
             if Workspace::default()
-                .bound(&prepared, &region, &mut bounds, &[], &[])
+                .bound(&prepared, &region, &[], &mut bounds, &[], &[])
                 .is_err()
             {
                 return f64::INFINITY;

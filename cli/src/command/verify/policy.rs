@@ -1,0 +1,177 @@
+//! `cede verify policy`.
+
+use crate::failure::Failure;
+use cede_controller::weights::words;
+use cede_controller::{Perspective, Weights};
+use cede_verify::policy::{Finding, Properties, Settled, StateProperty, Subject};
+use clap::Args;
+use miette::{IntoDiagnostic, WrapErr, miette};
+use std::io::Write as _;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// Settles each property of a file for a policy. A proof is about what the controller computes in
+/// `f32`; a refutation is a state at which it was run. Exit code 1 if a property is not proved.
+#[derive(Args)]
+pub(crate) struct Policy {
+    /// The policy (`.cede`).
+    #[arg(long, value_name = "FILE")]
+    weights: PathBuf,
+    /// The properties (TOML).
+    #[arg(long, value_name = "FILE", default_value = "docs/safety/policy.toml")]
+    properties: PathBuf,
+    /// Give up on a property after so many seconds.
+    #[arg(long, value_name = "SECONDS", default_value_t = 60)]
+    timeout: u64,
+    /// Have the independent checker go over every proof of an acceleration's bound.
+    #[arg(long)]
+    check: bool,
+    /// Also find the largest region, scaled about its centre, on which each property is proved.
+    #[arg(long)]
+    sweep: bool,
+    /// Threads to search on; all cores by default.
+    #[arg(long, default_value_t = 0)]
+    threads: usize,
+    /// Print one JSON object instead.
+    #[arg(long)]
+    json: bool,
+}
+
+impl Policy {
+    /// Runs the command.
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let words: Vec<u32> = words(&self.named(
+            &self.weights,
+            std::fs::read(&self.weights).into_diagnostic(),
+        )?)
+        .collect();
+        let weights = self.named(
+            &self.weights,
+            Weights::parse(&words).map_err(|e| miette!("{e}")),
+        )?;
+        let subject = self.named(&self.weights, Subject::new(weights).into_diagnostic())?;
+        let text = std::fs::read_to_string(&self.properties).into_diagnostic();
+        let properties = text.and_then(|text| Properties::read(&text).into_diagnostic());
+        let properties = self.named(&self.properties, properties)?.property;
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(self.threads)
+            .build()
+            .into_diagnostic();
+        let rows: Vec<Row<'_>> = pool
+            .map_err(Failure::Input)?
+            .install(|| properties.iter().map(|p| self.row(&subject, p)).collect());
+        // A reader that has seen enough may close the pipe.
+        let _ = writeln!(std::io::stdout(), "{}", self.told(&subject, &rows));
+        let open: Vec<&str> = rows
+            .iter()
+            .filter(|r| r.settled.finding != Finding::Proved)
+            .map(|r| r.property.id.as_str())
+            .collect();
+        if open.is_empty() {
+            Ok(())
+        } else {
+            Err(Failure::Check(format!("not proved: {}", open.join(", "))))
+        }
+    }
+
+    fn named<T>(&self, path: &std::path::Path, result: miette::Result<T>) -> Result<T, Failure> {
+        result
+            .wrap_err_with(|| format!("cannot use {}", path.display()))
+            .map_err(Failure::Input)
+    }
+
+    fn row<'p>(&self, subject: &Subject<'_>, property: &'p StateProperty) -> Row<'p> {
+        let limit = Duration::from_secs(self.timeout);
+        let settled = subject.settle(property, Instant::now() + limit, self.check);
+        let largest = self
+            .sweep
+            .then(|| subject.largest_scale(property, Instant::now() + limit));
+        Row {
+            property,
+            settled,
+            largest,
+        }
+    }
+
+    fn told(&self, subject: &Subject<'_>, rows: &[Row<'_>]) -> String {
+        if self.json {
+            let perspective = match subject.perspective() {
+                Perspective::Joint => "joint",
+                Perspective::Ego => "ego",
+            };
+            let rows: Vec<_> = rows.iter().map(Row::json).collect();
+            return serde_json::json!({ "semantics": "f32", "perspective": perspective, "properties": rows }).to_string();
+        }
+        rows.iter().map(Row::text).collect::<Vec<_>>().join("\n")
+    }
+}
+
+struct Row<'p> {
+    property: &'p StateProperty,
+    settled: Settled,
+    largest: Option<f64>,
+}
+
+impl Row<'_> {
+    fn word(&self) -> &'static str {
+        match self.settled.finding {
+            Finding::Proved => "proved",
+            Finding::Refuted { .. } => "refuted",
+            Finding::Unsettled => "unsettled",
+        }
+    }
+
+    fn text(&self) -> String {
+        let Settled {
+            finding,
+            regions,
+            checked,
+        } = &self.settled;
+        let mut line = format!(
+            "{:<6} {:<9} {} ({regions} regions",
+            self.property.id,
+            self.word(),
+            self.property.title
+        );
+        if *checked > 0 {
+            line += &format!(", {checked} checked independently");
+        }
+        line.push(')');
+        if let Finding::Refuted {
+            state: [d, v, other_d, other_v],
+            setting,
+            acceleration,
+        } = finding
+        {
+            line += &format!(
+                "\n       ego {d} m at {v} m/s, other {other_d} m at {other_v} m/s, {:?}, right of way {:?}: {acceleration} m/s²",
+                setting.kind, setting.right_of_way
+            );
+        }
+        if let Some(scale) = self.largest {
+            line += &format!(
+                "\n       proved on {:.0} % of the region's widths about its centre",
+                100.0 * scale
+            );
+        }
+        line
+    }
+
+    fn json(&self) -> serde_json::Value {
+        let witness = match &self.settled.finding {
+            Finding::Refuted {
+                state,
+                setting,
+                acceleration,
+            } => serde_json::json!({
+                "state": state, "acceleration": acceleration,
+                "conflict": format!("{:?}", setting.kind), "right_of_way": format!("{:?}", setting.right_of_way),
+            }),
+            _ => serde_json::Value::Null,
+        };
+        serde_json::json!({
+            "id": self.property.id, "title": self.property.title, "finding": self.word(), "witness": witness,
+            "regions": self.settled.regions, "checked": self.settled.checked, "largest_scale": self.largest,
+        })
+    }
+}

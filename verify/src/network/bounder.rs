@@ -1,0 +1,128 @@
+//! Bound propagation behind a front of features, for whoever searches over something other than
+//! the network's own inputs.
+
+use super::model::Network;
+use super::objective::Ascent;
+use super::proof::Refutation;
+use super::propagation::{Interval, Prepared, Workspace};
+use super::property::{Halfspace, InputBox};
+use super::relaxation::Lines;
+
+/// An input of the network as a linear function of the variables of a box:
+/// |input − (constant + slopes · x)| ≤ radius everywhere on it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Feature {
+    pub(crate) constant: f64,
+    pub(crate) slopes: Vec<f64>,
+    pub(crate) radius: f64,
+}
+
+impl Feature {
+    /// Range of the linear part on the box, rounding included.
+    pub(super) fn linear_range(&self, region: &InputBox) -> Interval {
+        let (mut l, mut u, mut size) = (self.constant, self.constant, self.constant.abs());
+        for ((s, lo), hi) in self.slopes.iter().zip(&region.lower).zip(&region.upper) {
+            let (a, b) = (s * lo, s * hi);
+            l += a.min(b);
+            u += a.max(b);
+            size += a.abs().max(b.abs());
+        }
+        let slack = super::rounding::gamma(self.slopes.len() + 4) * size;
+        (l - slack, u + slack)
+    }
+
+    /// Largest absolute value of the input on the box.
+    pub(crate) fn magnitude(&self, region: &InputBox) -> f64 {
+        let (l, u) = self.linear_range(region);
+        (l.abs().max(u.abs()) + self.radius) * (1.0 + 1e-12)
+    }
+
+    /// The lines that enclose the input, over its linear part.
+    pub(super) fn lines(&self, region: &InputBox) -> Lines {
+        Lines {
+            lower_slope: 1.0,
+            lower_offset: -self.radius,
+            upper_slope: 1.0,
+            upper_offset: self.radius,
+            most: self.magnitude(region),
+            free: false,
+        }
+    }
+}
+
+/// A network, and at most one constraint on its outputs, prepared for bounding.
+pub(crate) struct Bounder {
+    prepared: Prepared,
+    atoms: Vec<usize>,
+}
+
+impl Bounder {
+    pub(crate) fn new(network: &Network, atom: Option<&Halfspace>) -> Self {
+        let atoms: Vec<&Halfspace> = atom.into_iter().collect();
+        Self {
+            prepared: Prepared::new(network, &atoms),
+            atoms: (0..atoms.len()).collect(),
+        }
+    }
+
+    /// Bounds of all neurons with an activation before anything is known.
+    pub(crate) fn unbounded(&self) -> Box<[Interval]> {
+        vec![(f64::NEG_INFINITY, f64::INFINITY); self.prepared.neurons].into()
+    }
+
+    /// Memory to bound with.
+    pub(crate) fn worker(&self) -> Worker<'_> {
+        Worker {
+            bounder: self,
+            workspace: Workspace::default(),
+            ascent: Ascent::default(),
+        }
+    }
+}
+
+/// See [`Bounder::worker`].
+pub(crate) struct Worker<'a> {
+    bounder: &'a Bounder,
+    workspace: Workspace,
+    ascent: Ascent,
+}
+
+impl Worker<'_> {
+    /// Tightens the bounds, which hold on a larger box, to this one.
+    pub(crate) fn tighten(
+        &mut self,
+        region: &InputBox,
+        features: &[Feature],
+        bounds: &mut [Interval],
+    ) {
+        let Bounder { prepared, atoms } = self.bounder;
+        let workspace = &mut self.workspace;
+        // Without assumed phases the bounds cannot contradict each other.
+        let _ = pulp::Arch::new()
+            .dispatch(|| workspace.bound(prepared, region, features, bounds, &[], atoms));
+    }
+
+    /// Shows that the constraint holds nowhere on the box that was bounded last, if it can.
+    pub(crate) fn refute(&mut self, region: &InputBox) -> Option<Refutation> {
+        let (workspace, ascent) = (&self.workspace, &mut self.ascent);
+        let bound = pulp::Arch::new().dispatch(|| ascent.bound(workspace, region, 0..1));
+        (bound > 0.0).then(|| ascent.refutation(workspace, 0, bound))
+    }
+
+    /// After a failed [`Self::refute`]: the point of the box where the relaxation is least, and
+    /// in `scores` how much each variable is to blame.
+    pub(crate) fn minimiser(&self, scores: &mut [f64]) -> Vec<f64> {
+        let mut slacks = vec![0.0; self.workspace.symbols.count()];
+        self.ascent.blame(&self.workspace, &mut slacks, scores);
+        self.ascent.minimiser(scores.len()).to_vec()
+    }
+
+    /// Adds to `scores` how much of the unstable neurons' widths each variable brings about.
+    pub(crate) fn widths(&self, scores: &mut [f64]) {
+        for shares in self.workspace.shares.chunks_exact(scores.len()) {
+            for (score, share) in scores.iter_mut().zip(shares) {
+                *score += share;
+            }
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! Properties of our own policy, over the state of an encounter.
+//!
+//! A property is about all states (ego's distance and speed, other's distance and speed) of a box.
+//! The features that the network is told are enclosed by linear functions of the state, so bounds
+//! are propagated from the state to the acceleration, and the search cuts boxes of states.
+//!
+//! **What a proof is about**: the acceleration that the controller computes in `f32`. It is found
+//! for real numbers, with a stated margin for the `f32` rounding of features and network; a
+//! refutation is a state at which the controller itself was run.
+
+mod features;
+mod gradient;
+mod interval;
+mod property;
+mod search;
+
+pub use features::Setting;
+pub use property::{Claim, Properties, PropertyError, StateProperty, Variable};
+pub use search::{Finding, Settled};
+
+use crate::network::{Activation, Feature, InputBox, Layer, Matrix, Network};
+use cede_controller::{FeatureSet, Perspective, Weights};
+
+/// A policy as the verifier sees it: the network that gives the ego's mean, and its features.
+pub struct Subject<'a> {
+    weights: Weights<'a>,
+    network: Network,
+    normalisation: Vec<(f64, f64)>,
+}
+
+/// The policy's features are not functions of the state that properties speak of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("properties need a network over the features `route` or `traffic`, not `raw`")]
+pub struct UnsupportedFeatures;
+
+impl<'a> Subject<'a> {
+    /// The policy of a weights file, in the part of the left-turner where it is a joint one.
+    ///
+    /// # Errors
+    /// If its features are the paper's raw ones.
+    pub fn new(weights: Weights<'a>) -> Result<Self, UnsupportedFeatures> {
+        if weights.features == FeatureSet::Raw {
+            return Err(UnsupportedFeatures);
+        }
+        let dense = weights.network.layers();
+        let layers = dense.iter().enumerate().map(|(index, layer)| {
+            let last = index + 1 == dense.len();
+            let (biases, columns): (Vec<f32>, Vec<f32>) =
+                (layer.biases().collect(), layer.weights().collect());
+            // Of the outputs only the first is the ego's mean.
+            let outputs = if last { 1 } else { biases.len() };
+            let inputs = columns.len() / biases.len();
+            let mut matrix = Matrix::zeros(outputs, inputs);
+            for i in 0..outputs {
+                for (j, weight) in matrix.row_mut(i).iter_mut().enumerate() {
+                    *weight = f64::from(columns[j * biases.len() + i]);
+                }
+            }
+            Layer {
+                weights: matrix,
+                bias: biases[..outputs].iter().copied().map(f64::from).collect(),
+                activation: if last {
+                    Activation::Identity
+                } else {
+                    Activation::Relu
+                },
+                uncertainty: 0.0,
+            }
+        });
+        let layers = layers.collect();
+        let network =
+            Network::new(weights.features.count(), layers).map_err(|_| UnsupportedFeatures)?;
+        let normalisation = weights
+            .normalisation()
+            .map(|(c, s)| (f64::from(c), f64::from(s)))
+            .collect();
+        Ok(Self {
+            weights,
+            network,
+            normalisation,
+        })
+    }
+
+    /// Whose commands the network gives.
+    #[must_use]
+    pub fn perspective(&self) -> Perspective {
+        self.weights.perspective
+    }
+
+    /// The enclosed features on a box of states.
+    fn features(
+        &self,
+        region: &InputBox,
+        setting: &Setting,
+    ) -> Vec<(Feature, [interval::Interval; interval::STATE])> {
+        // The feature set was checked when the subject was made.
+        features::enclose(self.weights.features, &self.normalisation, region, setting)
+            .unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,221 @@
+//! Properties of a policy as a readable file.
+
+use super::features::Setting;
+use crate::network::InputBox;
+use cede_controller::{ConflictKind, RightOfWay};
+use serde::Deserialize;
+
+/// A file of properties (TOML, `[[property]]`).
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Properties {
+    /// The properties.
+    pub property: Vec<StateProperty>,
+}
+
+/// A property: a region of states and what is claimed there.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StateProperty {
+    /// Identifier, SR-nn as in `docs/safety/`.
+    pub id: String,
+    /// What it says, in a sentence.
+    pub title: String,
+    /// Ego's metres to its conflict point, least and most.
+    pub ego_distance: [f64; 2],
+    /// Ego's speed in m/s.
+    pub ego_speed: [f64; 2],
+    /// Other's metres to its conflict point; negative once past it.
+    pub other_distance: [f64; 2],
+    /// Other's speed in m/s.
+    pub other_speed: [f64; 2],
+    /// Kinds of conflict.
+    pub conflicts: Vec<Kind>,
+    /// Who may go first.
+    pub right_of_way: Vec<Right>,
+    /// Sines of the turns still to come, ego's and other's.
+    #[serde(default = "straight_on")]
+    pub turns: Vec<[f32; 2]>,
+    /// What is claimed on all of it.
+    pub claim: Claim,
+}
+
+fn straight_on() -> Vec<[f32; 2]> {
+    vec![[0.0, 0.0]]
+}
+
+/// See [`ConflictKind`].
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// Crossing.
+    Crossing,
+    /// Merging.
+    Merging,
+}
+
+/// See [`RightOfWay`].
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Right {
+    /// The ego's.
+    Ego,
+    /// The other's.
+    Other,
+    /// Not settled.
+    Unsettled,
+}
+
+/// A variable of the state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Variable {
+    /// Ego's distance.
+    EgoDistance,
+    /// Ego's speed.
+    EgoSpeed,
+    /// Other's distance.
+    OtherDistance,
+    /// Other's speed.
+    OtherSpeed,
+}
+
+impl Variable {
+    /// Its place in the state.
+    #[must_use]
+    pub fn index(self) -> usize {
+        self as usize
+    }
+}
+
+/// What is claimed of the acceleration a (m/s²) that the policy proposes for the ego.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Claim {
+    /// a ≤ this.
+    AccelerationAtMost(f64),
+    /// a ≥ this.
+    AccelerationAtLeast(f64),
+    /// a rises by at least `slope` for each unit of the variable (m/s² per m or m/s).
+    RisesAtLeast {
+        /// Which variable.
+        with: Variable,
+        /// The least slope; 0 for a response that never falls.
+        slope: f64,
+    },
+    /// a changes by at most `slope` for each unit of the variable.
+    ChangesAtMost {
+        /// Which variable.
+        with: Variable,
+        /// The largest slope.
+        slope: f64,
+    },
+}
+
+/// A file of properties that cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PropertyError {
+    /// Not TOML, or not of this form.
+    #[error("{0}")]
+    Form(String),
+    /// A range is empty, not finite or a negative speed.
+    #[error("{id}: {what}")]
+    Range {
+        /// The property.
+        id: String,
+        /// What is wrong.
+        what: &'static str,
+    },
+}
+
+impl Properties {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// With the place in the text, or the property whose range cannot be.
+    pub fn read(text: &str) -> Result<Self, PropertyError> {
+        let properties: Self =
+            toml::from_str(text).map_err(|e| PropertyError::Form(e.to_string()))?;
+        for property in &properties.property {
+            let fault = |what| {
+                Err(PropertyError::Range {
+                    id: property.id.clone(),
+                    what,
+                })
+            };
+            let region = property.region();
+            let mut sides = region.lower.iter().zip(&region.upper);
+            if !sides.all(|(lo, hi)| {
+                lo <= hi && lo.is_finite() && hi.is_finite() && lo.abs().max(hi.abs()) < 1e4
+            }) {
+                return fault("a range is empty or beyond ± 10 km; give [least, most]");
+            }
+            if property.ego_speed[0] < 0.0 || property.other_speed[0] < 0.0 {
+                return fault("a speed is negative");
+            }
+            if property.conflicts.is_empty()
+                || property.right_of_way.is_empty()
+                || property.turns.is_empty()
+            {
+                return fault("conflicts, right_of_way and turns must each name something");
+            }
+        }
+        Ok(properties)
+    }
+}
+
+impl StateProperty {
+    /// The box of states.
+    #[must_use]
+    pub fn region(&self) -> InputBox {
+        let sides = [
+            self.ego_distance,
+            self.ego_speed,
+            self.other_distance,
+            self.other_speed,
+        ];
+        InputBox {
+            lower: sides.map(|s| s[0]).to_vec(),
+            upper: sides.map(|s| s[1]).to_vec(),
+        }
+    }
+
+    /// The same claim on a region whose widths are scaled about its centre.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let about = |[lo, hi]: [f64; 2], least: f64| {
+            let (centre, half) = (0.5 * (lo + hi), 0.5 * factor * (hi - lo));
+            [(centre - half).max(least), centre + half]
+        };
+        Self {
+            ego_distance: about(self.ego_distance, f64::NEG_INFINITY),
+            ego_speed: about(self.ego_speed, 0.0),
+            other_distance: about(self.other_distance, f64::NEG_INFINITY),
+            other_speed: about(self.other_speed, 0.0),
+            ..self.clone()
+        }
+    }
+
+    /// Every combination of what does not vary within the region.
+    #[must_use]
+    pub fn settings(&self) -> Vec<Setting> {
+        let mut settings = Vec::new();
+        for kind in &self.conflicts {
+            for right in &self.right_of_way {
+                settings.extend(self.turns.iter().map(|&turns| Setting {
+                    kind: match kind {
+                        Kind::Crossing => ConflictKind::Crossing,
+                        Kind::Merging => ConflictKind::Merging,
+                    },
+                    right_of_way: match right {
+                        Right::Ego => RightOfWay::Ego,
+                        Right::Other => RightOfWay::Other,
+                        Right::Unsettled => RightOfWay::Unsettled,
+                    },
+                    turns,
+                }));
+            }
+        }
+        settings
+    }
+}

@@ -1,0 +1,429 @@
+//! Branch and bound over boxes of states.
+
+use super::Subject;
+use super::features::Setting;
+use super::gradient::gradient;
+use super::property::{Claim, StateProperty};
+use crate::network::{
+    Bounder, Feature, Halfspace, InputBox, Network, check,
+    proof::{Cell, Proof, Split},
+};
+use cede_controller::{Footprint, Pair, Part, Party, Point, Policy, Pose};
+use rayon::prelude::*;
+use std::time::Instant;
+
+/// How a property was settled.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Finding {
+    /// Proved on the whole region.
+    Proved,
+    /// The controller, run at this state, breaks the claim.
+    Refuted {
+        /// Ego's distance and speed, other's distance and speed.
+        state: [f64; 4],
+        /// What did not vary.
+        setting: Setting,
+        /// The acceleration that the controller proposed there (m/s²).
+        acceleration: f64,
+    },
+    /// Neither, in time.
+    Unsettled,
+}
+
+/// A finding and what it took.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settled {
+    /// How it ended.
+    pub finding: Finding,
+    /// Regions that were bounded.
+    pub regions: u64,
+    /// Regions that the independent checker confirmed: 0 if it was not asked, or the claim is one
+    /// about slopes, for which there is no independent check.
+    pub checked: usize,
+}
+
+/// Largest acceleration of any policy: 3·tanh.
+const MOST: f64 = cede_controller::policy::MAX_ACCELERATION as f64;
+/// Allowance for the rounding of `tanhf` and the factor 3, relative to 1.
+const TANH: f64 = 1e-6;
+/// A difference quotient is taken over this step (m or m/s) when a slope is to be refuted.
+const STEP: f64 = 0.05;
+/// What `f32` rounding may do to such a difference.
+const DIFFERENCE: f64 = 1e-4;
+/// Boxes bounded side by side.
+const ROUND: usize = 256;
+
+struct Node {
+    region: InputBox,
+    bounds: Box<[(f64, f64)]>,
+    cell: usize,
+}
+
+enum Step {
+    Proved(Cell),
+    Split(Split, [Node; 2]),
+    Broken([f64; 4], f64),
+    Stuck,
+}
+
+impl Subject<'_> {
+    /// Settles a property; with `checked`, the independent checker goes over every proof of an
+    /// acceleration claim, and a proof that it refuses counts as unsettled.
+    ///
+    /// The same on any number of threads, as long as the time suffices.
+    #[must_use]
+    pub fn settle(&self, property: &StateProperty, deadline: Instant, checked: bool) -> Settled {
+        let mut settled = Settled {
+            finding: Finding::Proved,
+            regions: 0,
+            checked: 0,
+        };
+        for setting in property.settings() {
+            let task = Task::new(self, property, setting);
+            let (finding, proof) = task.search(deadline, &mut settled.regions);
+            settled.finding = finding;
+            if settled.finding != Finding::Proved {
+                break;
+            }
+            if checked && let Some(atom) = &task.atom {
+                match task.check(atom, &proof) {
+                    Ok(regions) => settled.checked += regions,
+                    Err(_) => settled.finding = Finding::Unsettled,
+                }
+            }
+        }
+        settled
+    }
+}
+
+/// Largest scale that is tried.
+const LARGEST_SCALE: f64 = 3.0;
+/// Halvings of the interval of scales.
+const SCALES: u32 = 7;
+
+impl Subject<'_> {
+    /// The largest factor (at most 3, found by bisection to about 0.02) by which the region's
+    /// widths can be scaled about its centre, speeds kept from falling below 0, with the property
+    /// proved: 0 if not even close to the centre.
+    #[must_use]
+    pub fn largest_scale(&self, property: &StateProperty, deadline: Instant) -> f64 {
+        let (mut proved, mut open) = (0.0, LARGEST_SCALE);
+        for round in 0..SCALES {
+            let scale = 0.5 * (proved + open);
+            let left = deadline.saturating_duration_since(Instant::now());
+            let share = Instant::now() + left / (SCALES - round);
+            let settled = self.settle(&property.scaled(scale), share, false);
+            *(if settled.finding == Finding::Proved {
+                &mut proved
+            } else {
+                &mut open
+            }) = scale;
+        }
+        proved
+    }
+}
+
+/// A property in one setting.
+struct Task<'a> {
+    subject: &'a Subject<'a>,
+    property: &'a StateProperty,
+    setting: Setting,
+    /// The unsafe side of an acceleration claim, `f32` margin included.
+    atom: Option<Halfspace>,
+    bounder: Bounder,
+    root: Box<[(f64, f64)]>,
+}
+
+impl<'a> Task<'a> {
+    fn new(subject: &'a Subject<'a>, property: &'a StateProperty, setting: Setting) -> Self {
+        let region = property.region();
+        let features: Vec<Feature> = subject
+            .features(&region, &setting)
+            .into_iter()
+            .map(|f| f.0)
+            .collect();
+        let mut root = Bounder::new(&subject.network, None).unbounded();
+        Bounder::new(&subject.network, None)
+            .worker()
+            .tighten(&region, &features, &mut root);
+        let margin = single_precision_margin(&subject.network, &features, &region, &root);
+        let atom = unsafe_side(property.claim, margin);
+        let bounder = Bounder::new(&subject.network, atom.as_ref());
+        Self {
+            subject,
+            property,
+            setting,
+            atom,
+            bounder,
+            root,
+        }
+    }
+
+    fn search(&self, deadline: Instant, regions: &mut u64) -> (Finding, Proof) {
+        let mut proof = Proof {
+            cells: vec![Cell::default()],
+        };
+        let mut finding = Finding::Proved;
+        let mut stack = vec![Node {
+            region: self.property.region(),
+            bounds: self.root.clone(),
+            cell: 0,
+        }];
+        while !stack.is_empty() {
+            if Instant::now() > deadline {
+                return (Finding::Unsettled, proof);
+            }
+            let batch = stack.split_off(stack.len().saturating_sub(ROUND));
+            *regions += batch.len() as u64;
+            let cells: Vec<usize> = batch.iter().map(|node| node.cell).collect();
+            let step = |worker: &mut _, node| self.step(worker, node);
+            let steps: Vec<Step> = batch
+                .into_par_iter()
+                .with_min_len(8)
+                .map_init(|| self.bounder.worker(), step)
+                .collect();
+            for (step, place) in steps.into_iter().zip(cells) {
+                match step {
+                    Step::Proved(cell) => proof.cells[place] = cell,
+                    Step::Split(split, mut halves) => {
+                        let first = proof.cells.len();
+                        proof.cells.extend([Cell::default(), Cell::default()]);
+                        proof.cells[place].split =
+                            u32::try_from(first).ok().map(|first| (split, first));
+                        halves
+                            .iter_mut()
+                            .enumerate()
+                            .for_each(|(i, half)| half.cell = first + i);
+                        stack.extend(halves);
+                    }
+                    Step::Broken(state, acceleration) => {
+                        let finding = Finding::Refuted {
+                            state,
+                            setting: self.setting,
+                            acceleration,
+                        };
+                        return (finding, proof);
+                    }
+                    Step::Stuck => finding = Finding::Unsettled,
+                }
+            }
+        }
+        (finding, proof)
+    }
+
+    fn step(&self, worker: &mut crate::network::Worker<'_>, mut node: Node) -> Step {
+        let enclosed = self.subject.features(&node.region, &self.setting);
+        let features: Vec<Feature> = enclosed.iter().map(|f| f.0.clone()).collect();
+        worker.tighten(&node.region, &features, &mut node.bounds);
+        let mut scores = vec![0.0; node.region.lower.len()];
+        let mut candidates = vec![middle(&node.region)];
+        if self.atom.is_some() {
+            if let Some(refutation) = worker.refute(&node.region) {
+                return Step::Proved(Cell {
+                    refuted: vec![refutation],
+                    ..Cell::default()
+                });
+            }
+            candidates.push(worker.minimiser(&mut scores));
+        } else {
+            let slopes: Vec<_> = enclosed.iter().map(|f| f.1).collect();
+            let all = gradient(&self.subject.network, &node.bounds, &slopes);
+            if self.slope_holds(all) {
+                return Step::Proved(Cell::default());
+            }
+            worker.widths(&mut scores);
+        }
+        for point in candidates {
+            let state: [f64; 4] = std::array::from_fn(|i| f64::from(point[i] as f32));
+            if self.property.region().contains(&state)
+                && let Some(acceleration) = self.broken(state)
+            {
+                return Step::Broken(state, acceleration);
+            }
+        }
+        match halve(&node, &scores) {
+            Some((split, halves)) => Step::Split(split, halves),
+            None => Step::Stuck,
+        }
+    }
+
+    /// Whether the range of the gradient of the mean settles a claim about slopes. The slope of
+    /// the acceleration is that of the mean times 3·tanh′, which lies in (0, 3].
+    fn slope_holds(&self, mean: [super::interval::Interval; 4]) -> bool {
+        let scaled = |slope: f64| (MOST * slope).max(0.0);
+        match self.property.claim {
+            Claim::RisesAtLeast { with, slope } => {
+                let least = mean[with.index()].lo;
+                // Nothing is known of the smallest tanh′, so a positive slope is never proved.
+                slope <= 0.0 && -scaled(-least) >= slope
+            }
+            Claim::ChangesAtMost { with, slope } => scaled(mean[with.index()].magnitude()) <= slope,
+            Claim::AccelerationAtMost(_) | Claim::AccelerationAtLeast(_) => false,
+        }
+    }
+
+    /// The controller's acceleration at a state, if it breaks the claim.
+    fn broken(&self, state: [f64; 4]) -> Option<f64> {
+        let a = self.drive(state);
+        let quotient = |with: super::Variable| {
+            let mut shifted = state;
+            shifted[with.index()] = f64::from((state[with.index()] + STEP) as f32);
+            let step = shifted[with.index()] - state[with.index()];
+            let inside = self.property.region().contains(&shifted);
+            inside.then(|| (self.drive(shifted) - a, step))
+        };
+        let broken = match self.property.claim {
+            Claim::AccelerationAtMost(most) => a > most,
+            Claim::AccelerationAtLeast(least) => a < least,
+            Claim::RisesAtLeast { with, slope } => {
+                quotient(with).is_some_and(|(rise, step)| rise < slope * step - DIFFERENCE)
+            }
+            Claim::ChangesAtMost { with, slope } => {
+                quotient(with).is_some_and(|(rise, step)| rise.abs() > slope * step + DIFFERENCE)
+            }
+        };
+        broken.then_some(a)
+    }
+
+    /// What the controller proposes at a state.
+    fn drive(&self, state: [f64; 4]) -> f64 {
+        f64::from(Policy::from(self.subject.weights).act(&pair(state, &self.setting))[0])
+    }
+
+    fn check(&self, atom: &Halfspace, proof: &Proof) -> Result<usize, check::CheckError> {
+        let query = crate::network::Query {
+            region: self.property.region(),
+            unsafe_set: vec![vec![atom.clone()]],
+        };
+        let front = |region: &InputBox| {
+            self.subject
+                .features(region, &self.setting)
+                .into_iter()
+                .map(|f| f.0)
+                .collect()
+        };
+        check::check_behind(&self.subject.network, Some(&front), &query, proof)
+    }
+}
+
+/// The pair of vehicles at a state, in the part of the left-turner.
+pub(super) fn pair([d, v, other_d, other_v]: [f64; 4], setting: &Setting) -> Pair {
+    let party = |distance: f64, speed: f64, turn: f32| Party {
+        pose: Pose {
+            position: Point::new(0.0, 0.0),
+            direction: Point::new(1.0, 0.0),
+        },
+        // The feature is the sine of the angle from the direction to the exit.
+        exit: Point::new((1.0 - turn * turn).max(0.0).sqrt(), turn),
+        speed: speed as f32,
+        distance: distance as f32,
+        footprint: Footprint::PAPER,
+        leader: None,
+    };
+    Pair {
+        ego: party(d, v, setting.turns[0]),
+        other: party(other_d, other_v, setting.turns[1]),
+        kind: setting.kind,
+        right_of_way: setting.right_of_way,
+        part: Part::Left,
+        last_svo: std::f32::consts::FRAC_PI_4,
+    }
+}
+
+/// The outputs (the mean) that break an acceleration claim, widened by the margin.
+fn unsafe_side(claim: Claim, margin: f64) -> Option<Halfspace> {
+    // Beyond ± 3 nothing is left to prove, and atanh is infinite: an unreachable mean stands in.
+    let mean = |a: f64| (a.clamp(-MOST, MOST) / MOST).atanh().clamp(-1e6, 1e6);
+    match claim {
+        Claim::AccelerationAtMost(most) => {
+            let threshold = mean(most - MOST * TANH * f64::from(u8::from(most < MOST)));
+            Some(Halfspace {
+                coefficients: vec![-1.0],
+                bound: -(threshold - margin) + 1e-9,
+            })
+        }
+        Claim::AccelerationAtLeast(least) => {
+            let threshold = mean(least + MOST * TANH * f64::from(u8::from(least > -MOST)));
+            Some(Halfspace {
+                coefficients: vec![1.0],
+                bound: threshold + margin + 1e-9,
+            })
+        }
+        Claim::RisesAtLeast { .. } | Claim::ChangesAtMost { .. } => None,
+    }
+}
+
+/// How far the controller's `f32` mean can be from the exact one anywhere on the region, its
+/// inputs given: the usual bound for sums of products in any order, carried through the layers.
+fn single_precision_margin(
+    network: &Network,
+    features: &[Feature],
+    region: &InputBox,
+    bounds: &[(f64, f64)],
+) -> f64 {
+    let mut sizes: Vec<f64> = features.iter().map(|f| f.magnitude(region)).collect();
+    let mut errors = vec![0.0; sizes.len()];
+    let mut first = 0;
+    for layer in network.layers() {
+        let unit = (layer.inputs() + 4) as f64 * f64::from(f32::EPSILON) * 0.5 * 1.001;
+        let row = |i: usize| {
+            let terms = layer.weights.row(i).iter().zip(&sizes).zip(&errors);
+            let (size, carried) = terms.fold(
+                (layer.bias[i].abs(), 0.0),
+                |(size, carried), ((w, s), e)| (size + w.abs() * (s + e), carried + w.abs() * e),
+            );
+            (size, carried + unit * size)
+        };
+        let (all, next): (Vec<f64>, Vec<f64>) = (0..layer.outputs()).map(row).unzip();
+        let known = bounds.get(first..first + layer.outputs());
+        sizes = all
+            .iter()
+            .enumerate()
+            .map(|(i, &s)| known.map_or(s, |b| b[i].1.clamp(0.0, s)))
+            .collect();
+        errors = next;
+        first += layer.outputs();
+    }
+    errors.iter().fold(0.0_f64, |a, &b| a.max(b)) * (1.0 + 1e-9)
+}
+
+fn middle(region: &InputBox) -> Vec<f64> {
+    region
+        .lower
+        .iter()
+        .zip(&region.upper)
+        .map(|(lo, hi)| 0.5 * (lo + hi))
+        .collect()
+}
+
+/// Halves the box across the variable with the highest score. Boxes narrower than a micrometre
+/// (or micrometre per second) everywhere are not divided.
+fn halve(node: &Node, scores: &[f64]) -> Option<(Split, [Node; 2])> {
+    let InputBox { lower, upper } = &node.region;
+    let width = |i: usize| upper[i] - lower[i];
+    let better = |&a: &usize, &b: &usize| {
+        scores[a]
+            .total_cmp(&scores[b])
+            .then(width(a).total_cmp(&width(b)))
+            .then(b.cmp(&a))
+    };
+    let input = (0..lower.len())
+        .filter(|&i| width(i) > 1e-6)
+        .max_by(better)?;
+    let at = 0.5 * (lower[input] + upper[input]);
+    let (mut below, mut above) = (node.region.clone(), node.region.clone());
+    below.upper[input] = at;
+    above.lower[input] = at;
+    let half = |region| Node {
+        region,
+        bounds: node.bounds.clone(),
+        cell: 0,
+    };
+    Some((
+        Split::Input {
+            input: u32::try_from(input).ok()?,
+            at,
+        },
+        [half(below), half(above)],
+    ))
+}

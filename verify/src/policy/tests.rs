@@ -1,0 +1,234 @@
+use super::search::pair;
+use super::*;
+use crate::policy::property::{Claim, Kind, Right, Variable};
+use cede_controller::weights::Draft;
+use cede_controller::{ConflictKind, Mlp, Policy, RightOfWay};
+use proptest::prelude::*;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+use std::time::{Duration, Instant};
+
+const WIDTH: usize = 16;
+
+/// The words of a weights file with these parameters, normalised as a trained one might be.
+fn file(features: FeatureSet, parameters: &[f32]) -> Vec<u32> {
+    let count = features.count();
+    let all_scales = [
+        0.05, 0.1, 0.05, 0.1, 0.2, 0.2, 0.6, 0.05, 0.05, 1.0, 1.0, 1.0, 1.0, 1.0, 0.1, 0.1, 0.1,
+        0.1,
+    ];
+    let all_centres = [
+        20.0, 5.0, 20.0, 5.0, 4.0, 4.0, 0.8, 15.0, 15.0, 0.5, 0.5, 0.0, 0.0, 0.0, 20.0, 5.0, 20.0,
+        5.0,
+    ];
+    let draft = Draft {
+        features,
+        perspective: Perspective::Ego,
+        width: WIDTH,
+        provenance: [0; 32],
+        centres: &all_centres[..count],
+        scales: &all_scales[..count],
+        parameters,
+    };
+    let mut words = vec![0; 4000];
+    let length = {
+        draft.encode(&mut words).expect("a draft that fits");
+        words.iter().rposition(|&w| w != 0).map_or(0, |i| i + 1)
+    };
+    words.truncate(length);
+    words
+}
+
+fn random_file(features: FeatureSet, seed: u64) -> Vec<u32> {
+    let mut random = Pcg64::seed_from_u64(seed);
+    let parameters: Vec<f32> = (0..Mlp::words(features.count(), WIDTH))
+        .map(|_| 0.7 * (2.0 * random.random::<f32>() - 1.0))
+        .collect();
+    file(features, &parameters)
+}
+
+/// A policy whose mean is gain·(1 + the normalised other's distance) − 1.
+fn yielding(gain: f32) -> Vec<u32> {
+    let inputs = FeatureSet::Route.count();
+    let mut parameters = vec![0.0; Mlp::words(inputs, WIDTH)];
+    let (first, hidden) = ((inputs + 1) * WIDTH, (WIDTH + 1) * WIDTH);
+    parameters[0] = 1.0;
+    parameters[WIDTH + 2 * WIDTH] = 1.0;
+    parameters[first + WIDTH] = 1.0;
+    parameters[first + hidden + WIDTH] = 1.0;
+    parameters[first + 2 * hidden] = -1.0;
+    parameters[first + 2 * hidden + 4] = gain;
+    file(FeatureSet::Route, &parameters)
+}
+
+fn property(claim: Claim) -> StateProperty {
+    StateProperty {
+        id: "SR-00".to_owned(),
+        title: "for the test".to_owned(),
+        ego_distance: [5.0, 25.0],
+        ego_speed: [0.0, 8.0],
+        other_distance: [4.0, 12.0],
+        other_speed: [3.0, 9.0],
+        conflicts: vec![Kind::Crossing],
+        right_of_way: vec![Right::Other, Right::Unsettled],
+        turns: vec![[0.5, 0.0]],
+        claim,
+    }
+}
+
+fn settle(file: &[u32], claim: Claim) -> Settled {
+    let weights = Weights::parse(file).expect("a sound file");
+    let subject = Subject::new(weights).expect("route features");
+    subject.settle(
+        &property(claim),
+        Instant::now() + Duration::from_secs(60),
+        true,
+    )
+}
+
+/// Least and most acceleration over random states of the test's region.
+fn sampled(file: &[u32]) -> (f64, f64) {
+    let policy = Policy::new(file).expect("a sound file");
+    let mut random = Pcg64::seed_from_u64(9);
+    let property = property(Claim::AccelerationAtMost(0.0));
+    let region = property.region();
+    let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+    for setting in property.settings() {
+        for _ in 0..20_000 {
+            let state = std::array::from_fn(|i| {
+                region.lower[i] + random.random::<f64>() * (region.upper[i] - region.lower[i])
+            });
+            let a = f64::from(policy.act(&pair(state, &setting))[0]);
+            (least, most) = (least.min(a), most.max(a));
+        }
+    }
+    (least, most)
+}
+
+#[test]
+fn bounds_on_the_acceleration_are_proved_and_refuted() {
+    for (seed, features) in [
+        (1, FeatureSet::Route),
+        (2, FeatureSet::Traffic),
+        (3, FeatureSet::Route),
+    ] {
+        let file = random_file(features, seed);
+        let (least, most) = sampled(&file);
+        for (claim, holds) in [
+            (Claim::AccelerationAtMost(most + 0.5), true),
+            (Claim::AccelerationAtMost(most - 0.05), false),
+            (Claim::AccelerationAtLeast(least - 0.5), true),
+            (Claim::AccelerationAtLeast(least + 0.05), false),
+            (Claim::AccelerationAtMost(3.0), true),
+        ] {
+            let settled = settle(&file, claim);
+            match settled.finding {
+                Finding::Proved => {
+                    assert!(holds, "{claim:?}, sampled {least} to {most}");
+                    assert!(settled.checked > 0, "the checker went over it");
+                }
+                Finding::Refuted { acceleration, .. } => {
+                    assert!(!holds, "{claim:?}, {acceleration}");
+                }
+                Finding::Unsettled => panic!("{claim:?}, sampled {least} to {most}: {settled:?}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn a_policy_that_yields_is_told_from_one_with_a_flipped_sign() {
+    let with = Variable::OtherDistance;
+    // Normalised, 4 to 12 m are −0.8 to −0.4: the mean is −0.8 to −0.4.
+    let (good, bad) = (yielding(1.0), yielding(-1.0));
+    for claim in [
+        Claim::AccelerationAtMost(-1.1),
+        Claim::RisesAtLeast { with, slope: 0.0 },
+        Claim::ChangesAtMost { with, slope: 0.16 },
+        Claim::ChangesAtMost {
+            with: Variable::EgoSpeed,
+            slope: 1e-6,
+        },
+    ] {
+        assert_eq!(settle(&good, claim).finding, Finding::Proved, "{claim:?}");
+    }
+    let refuted =
+        |file: &[u32], claim| matches!(settle(file, claim).finding, Finding::Refuted { .. });
+    assert!(refuted(&bad, Claim::RisesAtLeast { with, slope: 0.0 }));
+    assert!(refuted(&good, Claim::AccelerationAtMost(-1.3)));
+    assert!(refuted(&good, Claim::ChangesAtMost { with, slope: 0.05 }));
+}
+
+#[test]
+fn the_papers_raw_features_are_refused() {
+    let file = random_file(FeatureSet::Raw, 1);
+    assert!(Subject::new(Weights::parse(&file).expect("a sound file")).is_err());
+}
+
+#[test]
+fn property_files_are_read_or_refused_with_a_reason() {
+    let text = r#"
+        [[property]]
+        id = "SR-20"
+        title = "Yields"
+        ego_distance = [5, 30]
+        ego_speed = [0, 8]
+        other_distance = [-2, 10]
+        other_speed = [4, 10]
+        conflicts = ["crossing", "merging"]
+        right_of_way = ["other"]
+        claim = { acceleration_at_most = -0.5 }
+    "#;
+    let read = Properties::read(text).expect("well formed");
+    assert_eq!(read.property[0].settings().len(), 2);
+    assert_eq!(read.property[0].claim, Claim::AccelerationAtMost(-0.5));
+    let slope = text.replace(
+        "{ acceleration_at_most = -0.5 }",
+        r#"{ rises_at_least = { with = "other_distance", slope = 0 } }"#,
+    );
+    assert!(Properties::read(&slope).is_ok());
+    for (from, to) in [
+        ("[5, 30]", "[30, 5]"),
+        ("[0, 8]", "[-1, 8]"),
+        ("[\"other\"]", "[]"),
+        ("acceleration", "velocity"),
+    ] {
+        assert!(Properties::read(&text.replace(from, to)).is_err(), "{to}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    /// Whatever the box, the features that the controller computes lie within their enclosure.
+    #[test]
+    fn the_controllers_features_lie_within_their_enclosure(
+        low in [-20.0..40.0, 0.0..10.0, -20.0..40.0, 0.0..10.0],
+        width in [0.0..10.0, 0.0..3.0, 0.0..10.0, 0.0..3.0],
+        at in prop::collection::vec([0.0..=1.0, 0.0..=1.0, 0.0..=1.0, 0.0..=1.0], 8),
+        traffic in any::<bool>(), stopped in any::<bool>(), fine in any::<bool>(),
+    ) {
+        let set = if traffic { FeatureSet::Traffic } else { FeatureSet::Route };
+        let file = random_file(set, 5);
+        let weights = Weights::parse(&file).expect("a sound file");
+        let subject = Subject::new(weights).expect("route features");
+        let setting = Setting { kind: ConflictKind::Merging, right_of_way: RightOfWay::Ego, turns: [0.25, -0.5] };
+        let single = |x: f64| f64::from(x as f32);
+        let factor = if fine { 0.01 } else { 1.0 };
+        let lower: Vec<f64> = (0..4).map(|i| if stopped && i % 2 == 1 { 0.0 } else { single(low[i]) }).collect();
+        let upper: Vec<f64> = (0..4).map(|i| single(lower[i] + factor * width[i]).max(lower[i])).collect();
+        let region = InputBox { lower, upper };
+        let features = subject.features(&region, &setting);
+        for share in at {
+            let state: [f64; 4] = std::array::from_fn(|i| {
+                single(region.lower[i] + share[i] * (region.upper[i] - region.lower[i])).clamp(region.lower[i], region.upper[i])
+            });
+            let inputs = Policy::from(weights).inputs(&pair(state, &setting));
+            for (k, ((feature, _), input)) in features.iter().zip(inputs).enumerate() {
+                let linear: f64 = feature.constant + feature.slopes.iter().zip(&state).map(|(s, x)| s * x).sum::<f64>();
+                let off = (f64::from(input) - linear).abs();
+                prop_assert!(off <= feature.radius + 1e-12, "feature {k}: {input} is {off} off, radius {}", feature.radius);
+            }
+        }
+    }
+}
