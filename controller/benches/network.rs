@@ -1,11 +1,15 @@
 //! One pass through the network alone, for the two widths in use.
 
+#[path = "../../sim/benches/processor/mod.rs"]
+mod processor;
+
 use cede_controller::Mlp;
 use cede_controller::weights::Aligned;
 use criterion::{Criterion, criterion_group, criterion_main};
+use processor::CpuTime;
 use std::hint::black_box;
 
-fn forward(c: &mut Criterion) {
+fn forward(c: &mut Criterion<CpuTime>) {
     let mut group = c.benchmark_group("network");
     for width in [64, 128] {
         let count = Mlp::words(8, width);
@@ -21,5 +25,9 @@ fn forward(c: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, forward);
+criterion_group!(
+    name = benches;
+    config = Criterion::default().with_measurement(CpuTime);
+    targets = forward
+);
 criterion_main!(benches);

@@ -1,4 +1,7 @@
-//! One inference in Cede and in each peer, after a check that they agree.
+//! One inference in Cede and in each peer, after a check that they agree. Processor time, so that a loaded machine matters less.
+
+#[path = "../../../sim/benches/processor/mod.rs"]
+mod processor;
 
 use cede_peers::burn::burn;
 use cede_peers::candle::candle;
@@ -8,6 +11,7 @@ use cede_peers::onnxruntime::onnxruntime;
 use cede_peers::tract::tract;
 use cede_peers::{Failure, Run, layers};
 use criterion::{Criterion, criterion_group, criterion_main};
+use processor::CpuTime;
 use std::hint::black_box;
 
 const X: [f32; 8] = [0.3, -0.7, 0.1, 0.9, -0.2, 0.5, -0.4, 0.8];
@@ -28,7 +32,7 @@ fn runs(width: usize) -> Result<Vec<(&'static str, Run)>, Failure> {
     Ok(runs)
 }
 
-fn inference(c: &mut Criterion) {
+fn inference(c: &mut Criterion<CpuTime>) {
     for width in [64, 128] {
         let mut runs = runs(width).expect("every peer builds the network");
         let expected = runs[0].1(&X).expect("Cede runs");
@@ -42,5 +46,9 @@ fn inference(c: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, inference);
+criterion_group!(
+    name = benches;
+    config = Criterion::default().with_measurement(CpuTime);
+    targets = inference
+);
 criterion_main!(benches);
