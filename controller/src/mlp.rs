@@ -22,6 +22,8 @@ const TILE: usize = if cfg!(target_feature = "avx") {
 /// Each hidden neuron is summed as `((bias + w₀x₀) + w₁x₁) + …`, each output as four such sums over the inputs
 /// 0, 4, 8, …; 1, 5, 9, …; 2, …; 3, … (the first with the bias), added as `(s₀ + s₁) + (s₂ + s₃)`. No product
 /// is fused with a sum. So every target that follows IEEE 754 gives the same bits.
+///
+/// The sizes are values, not types: as fast, and one code serves every weights file.
 #[derive(Clone, Copy, Debug)]
 pub struct Mlp<'a> {
     hidden: [Dense<'a>; 3],
@@ -230,6 +232,21 @@ mod tests {
                 assert_eq!(out.map(f32::to_bits), expected.map(f32::to_bits));
             }
         }
+    }
+
+    #[test]
+    fn another_order_gives_other_bits() {
+        let words: Vec<u32> = noise(3).map(f32::to_bits).take(Mlp::words(8, 64)).collect();
+        let x: Vec<f32> = noise(5).take(8).collect();
+        let mut w = words.iter().map(|&w| f32::from_bits(w));
+        let mut hidden = x.clone();
+        for _ in 0..3 {
+            hidden = layer(&mut w, &hidden, 64);
+            hidden
+                .iter_mut()
+                .for_each(|x| *x = if *x > 0.0 { *x } else { 0.0 });
+        }
+        assert_ne!(layer(&mut w, &hidden, OUTPUTS), reference(&words, &x, 64));
     }
 
     #[test]
