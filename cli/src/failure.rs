@@ -1,9 +1,11 @@
 //! Why a command ended badly, and the exit code that says so.
 
+use cede_sim::data::DataError;
+use cede_sim::output::OutputError;
 use std::process::ExitCode;
 
 /// Why a command ended badly. Usage errors (exit code 2) are clap's.
-pub enum Failure {
+pub(crate) enum Failure {
     /// A check ran and did not hold: exit code 1.
     Check(String),
     /// The input or the output cannot be used: exit code 3.
@@ -13,8 +15,13 @@ pub enum Failure {
 }
 
 impl Failure {
+    /// Bad input, and what the user can do about it.
+    pub(crate) fn input(problem: impl std::fmt::Display, mend: impl Into<String>) -> Self {
+        Self::Input(miette::miette!(help = mend.into(), "{problem}"))
+    }
+
     /// Tells the user on stderr and gives the exit code.
-    pub fn report(self) -> ExitCode {
+    pub(crate) fn report(self) -> ExitCode {
         match self {
             Self::Check(what) => {
                 eprintln!("check failed: {what}");
@@ -32,8 +39,16 @@ impl Failure {
     }
 }
 
-impl<E: miette::Diagnostic + Send + Sync + 'static> From<E> for Failure {
-    fn from(error: E) -> Self {
-        Self::Input(error.into())
+impl From<DataError> for Failure {
+    fn from(error: DataError) -> Self {
+        let mend = error.mend();
+        Self::input(error, mend)
+    }
+}
+
+impl From<OutputError> for Failure {
+    fn from(error: OutputError) -> Self {
+        let mend = error.mend();
+        Self::input(error, mend)
     }
 }

@@ -1,23 +1,32 @@
 //! `cede`: from recorded tracks to a trained, proved and reported driver, in one binary.
 
 mod command;
+mod drivers;
 mod failure;
+mod interrupt;
+mod judge;
+mod source;
+mod table;
 
 use clap::Parser;
 use std::process::ExitCode;
 
 /// Decides how a vehicle crosses an unsignalized intersection.
 ///
+/// Without a command: the demo. It drives the embedded scenarios, prints the
+/// table and writes the report.
+///
 /// Exit codes: 0 fine, 1 a check failed, 2 usage, 3 bad input, 4 interrupted.
 #[derive(Parser)]
 #[command(version)]
 struct Cli {
     #[command(subcommand)]
-    command: command::Command,
+    command: Option<command::Command>,
 }
 
 fn main() -> ExitCode {
-    match Cli::parse().command.run() {
+    interrupt::install();
+    match Cli::parse().command.unwrap_or_default().run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
     }

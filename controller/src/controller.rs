@@ -93,6 +93,14 @@ impl<'w, const N: usize> Controller<'w, N> {
         Ok(self.propose(scene, seen))
     }
 
+    /// What the policy alone would do (m/s², within ± 3): to measure what the shield costs, never to drive.
+    ///
+    /// To be called once a period instead of [`Controller::decide`]; 0 if the observation has a fault.
+    pub fn proposal(&mut self, scene: &Scene<N>, observation: &Observation<N>) -> f32 {
+        self.ask(scene, observation)
+            .map_or(0.0, |(acceleration, _)| acceleration)
+    }
+
     fn propose(&mut self, scene: &Scene<N>, seen: &Observation<N>) -> (f32, Option<Outlook>) {
         let leader = leader(scene, seen);
         let mut proposal = (FREE, None);

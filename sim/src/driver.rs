@@ -11,17 +11,21 @@ mod human;
 mod idm;
 mod logistic;
 mod nearer_first;
+mod policy_alone;
 mod replay;
 mod right_of_way;
+mod shielded;
 
-pub use baseline::{Baseline, FitError};
+pub use baseline::{Baseline, FitError, UnknownBaseline};
 pub use constant::{InitialSpeed, MeanSpeed};
 pub use controller::{Cede, observe, scene};
 pub use human::Human;
 pub use idm::Idm;
 pub use logistic::Logistic;
 pub use nearer_first::NearerFirst;
+pub use policy_alone::PolicyAlone;
 pub use replay::Replay;
+pub use shielded::Shielded;
 
 use crate::encounter::{Encounter, Participant};
 

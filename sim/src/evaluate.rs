@@ -5,9 +5,11 @@
 
 mod clearance;
 mod row;
+mod selection;
 
 pub use clearance::clearance;
 pub use row::{Interval, Label, Row};
+pub use selection::{Round, Selection, UnknownSelection};
 
 use crate::driver::DriverFactory;
 use crate::encounter::{Encounter, EncounterId, Role};

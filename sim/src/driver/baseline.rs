@@ -2,6 +2,7 @@
 
 use super::{DriverFactory, Human, Idm, InitialSpeed, Logistic, MeanSpeed, NearerFirst, Replay};
 use crate::encounter::Encounter;
+use cede_controller::ContractError;
 use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
@@ -25,12 +26,15 @@ pub enum Baseline {
     Logistic,
 }
 
-/// Why a baseline cannot be fitted.
+/// Why there are no drivers of a kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum FitError {
     /// It learns from recorded encounters, and there is none to learn from.
     #[error("driver `{0}` is fitted on the training split, which is empty here")]
     NoTraining(Baseline),
+    /// They carry a shield, and it cannot be built.
+    #[error("the shield's contract: {0}")]
+    Contract(#[from] ContractError),
 }
 
 impl Baseline {
@@ -133,8 +137,8 @@ mod tests {
     #[test]
     fn the_nearer_goes_and_the_other_waits() {
         for (left, other, first) in [
-            ([15.0, 5.0], [25.0, 8.0], Role::Left),
-            ([30.0, 5.0], [25.0, 5.0], Role::Other),
+            ([15.0, 3.0], [25.0, 3.0], Role::Left),
+            ([30.0, 3.0], [25.0, 3.0], Role::Other),
         ] {
             let episode = run(Baseline::NearerFirst, &[], &crossing(left, other));
             assert_eq!(episode.first(), Some(first));

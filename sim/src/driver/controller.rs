@@ -31,12 +31,7 @@ impl DriverFactory for Cede {
     }
 
     fn driver(&self, encounter: &Encounter, ego: usize, _: u64) -> Box<dyn Driver> {
-        let part = if ego == Role::Left as usize {
-            Part::Left
-        } else {
-            Part::Other
-        };
-        let controller = Controller::new(self.policy, self.contract, part);
+        let controller = Controller::new(self.policy, self.contract, part(ego));
         match (controller, scene(encounter, ego)) {
             (Ok(controller), Some(scene)) => Box::new(Seat {
                 controller,
@@ -46,6 +41,15 @@ impl DriverFactory for Cede {
             // The contract was checked; without a vehicle to meet there is nothing to decide.
             _ => Box::new(Nobody),
         }
+    }
+}
+
+/// The part that a joint policy gives judged vehicle `ego`.
+pub(super) const fn part(ego: usize) -> Part {
+    if ego == Role::Left as usize {
+        Part::Left
+    } else {
+        Part::Other
     }
 }
 

@@ -5,8 +5,8 @@ use crate::encounter::Role;
 
 /// Acceleration (m/s²) with which a vehicle takes up its speed.
 const PULL_AWAY: f32 = 2.0;
-/// Speed (m/s) of a vehicle that has the right of way: that of a calm turn.
-const CRUISE: f32 = 6.0;
+/// Speed (m/s) of a vehicle that has the right of way: that of a calm turn from a stop.
+const CRUISE: f32 = 4.0;
 /// The stopping vehicle aims at this many metres before its conflict point.
 const STOP_SHORT: f32 = 1.0;
 /// Metres beyond its conflict point at which a vehicle has left the crossing: the point lies up

@@ -1,34 +1,19 @@
-//! Where the two vehicles have left their conflict zone.
+//! Where the two vehicles have left their conflict zones.
 
-use crate::encounter::{Encounter, Role, SimRoute};
-use crate::overlap::OrientedBox;
-use cede_controller::Footprint;
+use crate::driver::scene;
+use crate::encounter::{Encounter, Role};
+use cede_controller::Meeting;
 
-/// Routes are searched in steps of this many metres.
-const SPACING: f32 = 0.5;
-
-/// The arc lengths (m) beyond which the two footprints cannot touch any more, wherever the
-/// other is on its route; where the routes end in one lane, the routes' ends.
+/// The arc lengths (m) at which the two have left the last of their conflict zones for good; where the
+/// routes end in one lane, the routes' ends.
 #[must_use]
 pub fn clearance(encounter: &Encounter) -> [f32; 2] {
-    let routes = Role::BOTH.map(|role| &encounter.judged(role).route);
-    let swept = routes.map(boxes);
-    [0, 1].map(|i: usize| {
-        let last = swept[i]
+    Role::BOTH.map(|role| {
+        let scene = scene(encounter, role as usize);
+        let zones = scene
             .iter()
-            .rposition(|own| swept[1 - i].iter().any(|other| own.overlaps(other)));
-        last.map_or(0.0, |last| {
-            ((last + 1) as f32 * SPACING).min(routes[i].length())
-        })
+            .flat_map(|scene| scene.meetings().iter().flat_map(Meeting::zones));
+        let last = zones.map(|zone| zone.ego.to).fold(0.0, f32::max);
+        last.min(encounter.judged(role).route.length())
     })
-}
-
-fn boxes(route: &SimRoute) -> Vec<OrientedBox> {
-    let count = (route.length() / SPACING).ceil() as u16;
-    (0..=count)
-        .map(|i| {
-            let pose = route.pose(f32::from(i) * SPACING);
-            OrientedBox::new(pose, Footprint::PAPER)
-        })
-        .collect()
 }

@@ -1,0 +1,41 @@
+//! The bare `cede`: the embedded scenarios, driven and tabulated.
+
+use crate::drivers::Drivers;
+use crate::failure::Failure;
+use crate::judge::{ModeName, Plan, UntilName};
+use crate::table;
+use cede_controller::Contract;
+use cede_sim::Dataset;
+use cede_sim::data::Split;
+use cede_sim::driver::Baseline;
+use cede_sim::evaluate::Selection;
+
+/// Encounters of the demo; the drivers are judged on the test split of them.
+const ENCOUNTERS: usize = 1000;
+/// Seed of the demo's encounters.
+const SEED: u64 = 1;
+
+/// Runs the demo.
+pub(crate) fn run() -> Result<(), Failure> {
+    let dataset = Dataset::synthetic(ENCOUNTERS, SEED);
+    println!(
+        "{} synthetic encounters; drivers that learn do so on the training split.\n",
+        dataset.encounters.len()
+    );
+    let mut rows = Vec::new();
+    for until in [UntilName::Conflict, UntilName::Cleared] {
+        let plan = Plan {
+            contenders: Drivers::all().contenders(None)?,
+            lenient: true,
+            selections: vec![Selection::Split(Split::Test)],
+            mode: ModeName::Joint,
+            partner: Baseline::Replay,
+            until,
+            shields: vec![None, Some(Contract::ALL_WAY_STOP)],
+            seed: SEED,
+        };
+        rows.extend(plan.judge(&dataset, |_, _| {})?);
+    }
+    print!("{}", table::render(&rows, false));
+    Ok(())
+}

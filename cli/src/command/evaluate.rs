@@ -1,0 +1,138 @@
+//! `cede evaluate`: drivers on recorded or synthetic encounters, and the table.
+
+mod episodes;
+
+use crate::drivers::Drivers;
+use crate::failure::Failure;
+use crate::judge::{ContractName, ModeName, Plan, ShieldName, UntilName};
+use crate::source::Source;
+use crate::{interrupt, table};
+use cede_sim::Dataset;
+use cede_sim::data::Split;
+use cede_sim::driver::Baseline;
+use cede_sim::evaluate::{Row, Selection};
+use episodes::EpisodeFile;
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Options of `cede evaluate`.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    source: Source,
+    /// Drivers to judge, separated by commas, or `all`
+    #[arg(long, default_value = "all", value_name = "NAME[,NAME…]")]
+    driver: Drivers,
+    /// Encounters to judge on: train, validation, test, all, leave-one-file-out, separated by
+    /// commas; by default the first three, as far as they are there
+    #[arg(long, value_delimiter = ',', value_name = "NAME[,NAME…]")]
+    split: Vec<Selection>,
+    /// Who is under test
+    #[arg(long, value_enum, default_value_t = ModeName::Joint)]
+    mode: ModeName,
+    /// In ego mode, the driver of the other vehicle
+    #[arg(long, default_value_t = Baseline::Replay, value_name = "NAME")]
+    partner: Baseline,
+    /// When an episode is over
+    #[arg(long, value_enum, default_value_t = UntilName::Conflict)]
+    until: UntilName,
+    /// Whether the vehicle under test carries the shield
+    #[arg(long, value_enum, default_value_t = ShieldName::Off)]
+    shield: ShieldName,
+    /// What the shield assumes of the others
+    #[arg(long, value_enum, default_value_t = ContractName::WorstCase)]
+    contract: ContractName,
+    /// The policy of driver `cede`
+    #[arg(long, value_name = "FILE.cede")]
+    weights: Option<PathBuf>,
+    /// Seed of every random choice
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Number of threads; the result does not depend on it [default: all cores]
+    #[arg(long)]
+    threads: Option<usize>,
+    /// Print one JSON object instead of the table; shares are fractions
+    #[arg(long)]
+    json: bool,
+    /// Also write one line an episode, to a file that ends in .csv or .parquet
+    #[arg(long, value_name = "FILE")]
+    episodes: Option<EpisodeFile>,
+}
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Output<'a> {
+    data: &'a str,
+    site: &'a str,
+    seed: u64,
+    rows: &'a [Row],
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    interrupt::defer();
+    if let Some(threads) = args.threads {
+        // Fails only if the pool is there already: nothing has used it yet.
+        let _ = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build_global();
+    }
+    let dataset = args.source.load(args.seed)?;
+    let plan = args.plan(&dataset)?;
+    let mut records = Vec::new();
+    let rows = plan.judge(&dataset, |row, drives| {
+        if args.episodes.is_some() {
+            records.extend(episodes::records(row, drives));
+        }
+    })?;
+    if let Some(file) = &args.episodes {
+        file.write(&records)?;
+    }
+    args.print(&dataset, &rows)
+}
+
+impl Args {
+    fn plan(&self, dataset: &Dataset) -> Result<Plan, Failure> {
+        Ok(Plan {
+            contenders: self.driver.contenders(self.weights.as_deref())?,
+            lenient: self.driver.lenient,
+            selections: if self.split.is_empty() {
+                present(dataset)
+            } else {
+                self.split.clone()
+            },
+            mode: self.mode,
+            partner: self.partner,
+            until: self.until,
+            shields: self.shield.shields(self.contract.into()),
+            seed: self.seed,
+        })
+    }
+
+    fn print(&self, dataset: &Dataset, rows: &[Row]) -> Result<(), Failure> {
+        let site = dataset.site.name.as_str();
+        if self.json {
+            let output = Output {
+                data: &self.source.data,
+                site,
+                seed: self.seed,
+                rows,
+            };
+            let text = serde_json::to_string_pretty(&output);
+            let text = text.map_err(|error| Failure::input(error, "report this as a bug"))?;
+            println!("{text}");
+        } else {
+            print!("{}", table::render(rows, site == "EP0"));
+        }
+        Ok(())
+    }
+}
+
+/// The splits of which the folder holds files.
+fn present(dataset: &Dataset) -> Vec<Selection> {
+    [Split::Train, Split::Validation, Split::Test]
+        .into_iter()
+        .filter(|&split| dataset.split(split).next().is_some())
+        .map(Selection::Split)
+        .collect()
+}

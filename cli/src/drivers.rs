@@ -1,0 +1,133 @@
+//! The drivers that can be named on the command line.
+
+use crate::failure::Failure;
+use cede_controller::{Contract, Policy};
+use cede_sim::Encounter;
+use cede_sim::driver::{Baseline, Cede, DriverFactory, FitError, PolicyAlone, Shielded};
+use cede_sim::weights;
+use std::path::Path;
+use std::str::FromStr;
+
+/// The drivers that the user named, in order.
+#[derive(Clone, Debug)]
+pub(crate) struct Drivers {
+    names: Vec<Name>,
+    /// The user said `all`: those that cannot be had here are left out, instead of a failure.
+    pub(crate) lenient: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Name {
+    Baseline(Baseline),
+    Cede,
+}
+
+impl Name {
+    fn all() -> impl Iterator<Item = Self> {
+        let baselines = Baseline::ALL.into_iter().map(Self::Baseline);
+        baselines.chain([Self::Cede])
+    }
+
+    const fn text(self) -> &'static str {
+        match self {
+            Self::Baseline(baseline) => baseline.name(),
+            Self::Cede => "cede",
+        }
+    }
+}
+
+impl Drivers {
+    /// All of them, as far as they can be had.
+    pub(crate) fn all() -> Self {
+        Self {
+            names: Name::all().collect(),
+            lenient: true,
+        }
+    }
+
+    /// The drivers themselves; `weights` is the file of Cede's policy.
+    ///
+    /// # Errors
+    /// The file cannot be used, or Cede was named without one.
+    pub(crate) fn contenders(&self, weights: Option<&Path>) -> Result<Vec<Contender>, Failure> {
+        let mut contenders = Vec::new();
+        for &name in &self.names {
+            match (name, weights) {
+                (Name::Baseline(baseline), _) => contenders.push(Contender::Baseline(baseline)),
+                (Name::Cede, Some(file)) => contenders.push(Contender::Cede(load(file)?)),
+                (Name::Cede, None) if self.lenient => {}
+                (Name::Cede, None) => {
+                    return Err(Failure::input(
+                        "driver `cede` needs a policy",
+                        "name its weights with --weights FILE",
+                    ));
+                }
+            }
+        }
+        Ok(contenders)
+    }
+}
+
+fn load(file: &Path) -> Result<Policy<'static>, Failure> {
+    weights::load(file)
+        .map_err(|error| Failure::input(error, "give a .cede file as `cede train` writes it"))
+}
+
+impl FromStr for Drivers {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        if text == "all" {
+            return Ok(Self::all());
+        }
+        let named = |name: &str| {
+            let known = Name::all().find(|known| known.text() == name.trim());
+            known.ok_or_else(|| {
+                let all: Vec<_> = Name::all().map(Name::text).collect();
+                let all = all.join(", ");
+                format!("no driver is called `{name}`; there are: all, {all}")
+            })
+        };
+        Ok(Self {
+            names: text.split(',').map(named).collect::<Result<_, _>>()?,
+            lenient: false,
+        })
+    }
+}
+
+/// A driver that is judged.
+pub(crate) enum Contender {
+    /// One that follows rules, with or without the shield in front.
+    Baseline(Baseline),
+    /// The controller, or without the shield its policy alone.
+    Cede(Policy<'static>),
+}
+
+impl Contender {
+    /// Name in tables.
+    pub(crate) const fn name(&self) -> &'static str {
+        match self {
+            Self::Baseline(baseline) => baseline.name(),
+            Self::Cede(_) => Name::Cede.text(),
+        }
+    }
+
+    /// Makes its drivers; those that learn do so from `training`. With a `contract` they carry the shield.
+    ///
+    /// # Errors
+    /// It learns, and `training` is empty.
+    pub(crate) fn fit(
+        &self,
+        training: &[&Encounter],
+        contract: Option<Contract>,
+    ) -> Result<Box<dyn DriverFactory>, FitError> {
+        Ok(match (self, contract) {
+            (Self::Baseline(baseline), None) => baseline.fit(training)?,
+            (Self::Baseline(baseline), Some(contract)) => {
+                Box::new(Shielded::new(baseline.fit(training)?, contract)?)
+            }
+            (Self::Cede(policy), None) => Box::new(PolicyAlone::new(*policy)),
+            (Self::Cede(policy), Some(contract)) => Box::new(Cede::new(*policy, contract)?),
+        })
+    }
+}

@@ -1,0 +1,115 @@
+//! The table on stdout, with the paper's rows beside ours.
+
+use cede_sim::evaluate::{Interval, Row};
+use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
+
+/// What the paper's Table II prints for the site EP0: driver, split, n, priority accuracy,
+/// episode length error, collisions.
+const PAPER: [(&str, &str, usize, f64, f64, usize); 6] = [
+    ("paper: BC", "train", 215, 0.7209, 0.5540, 1),
+    ("paper: SACER-V", "train", 215, 0.6465, 0.2462, 4),
+    ("paper: SACER-SVO", "train", 215, 0.8186, 0.3835, 1),
+    ("paper: BC", "test", 17, 0.6471, 0.5759, 0),
+    ("paper: SACER-V", "test", 17, 0.7646, 0.3843, 1),
+    ("paper: SACER-SVO", "test", 17, 0.9412, 0.3078, 0),
+];
+
+/// The rows of `rows` in blocks of equal split, mode, end and shield; `paper` adds the paper's to
+/// those that follow its protocol.
+pub(crate) fn render(rows: &[Row], paper: bool) -> String {
+    let mut table = Table::new();
+    table
+        .load_style(presets::ASCII_MARKDOWN)
+        .set_content_arrangement(ContentArrangement::Disabled)
+        .set_header([
+            "driver",
+            "n",
+            "priority accuracy",
+            "length error",
+            "in s",
+            "collisions",
+            "time-outs",
+            "RMSE 3 s",
+            "SVO RMSE",
+            "TTC < 1.5 s",
+            "jerk",
+            "shielded",
+        ]);
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    let mut text = String::new();
+    for block in rows.chunk_by(|a, b| block_of(a) == block_of(b)) {
+        let mut table = table.clone();
+        for row in block {
+            table.add_row(cells(row));
+        }
+        if let Some(first) = block.first() {
+            if paper && (first.mode.as_str(), first.until.as_str()) == ("joint", "conflict") {
+                for row in PAPER.iter().filter(|row| row.1 == first.split) {
+                    table.add_row(paper_cells(*row));
+                }
+            }
+            text += &format!("{}\n{table}\n\n", heading(first));
+        }
+    }
+    text
+}
+
+fn block_of(row: &Row) -> (&str, &str, &str, &str) {
+    (&row.split, &row.mode, &row.until, &row.shield)
+}
+
+fn heading(row: &Row) -> String {
+    let Row {
+        split,
+        mode,
+        until,
+        shield,
+        encounters,
+        ..
+    } = row;
+    format!("{split}: {encounters} encounters, {mode} mode, until {until}, shield {shield}")
+}
+
+fn cells(row: &Row) -> [String; 12] {
+    [
+        row.driver.clone(),
+        row.n.to_string(),
+        share(row.priority_accuracy, row.priority_accuracy_interval),
+        number(row.episode_length_error, 3, ""),
+        number(row.episode_length_error_s, 2, " s"),
+        row.collisions.to_string(),
+        row.time_outs.to_string(),
+        number(row.position_rmse_3s, 2, " m"),
+        number(row.svo_rmse, 2, " rad"),
+        percent(row.critical_ttc_share),
+        number(row.jerk_rms, 1, " m/s³"),
+        percent(row.shielded_steps),
+    ]
+}
+
+fn paper_cells(row: (&str, &str, usize, f64, f64, usize)) -> Vec<String> {
+    let (driver, _, n, accuracy, length, collisions) = row;
+    vec![
+        driver.to_owned(),
+        n.to_string(),
+        percent(Some(accuracy)),
+        number(Some(length), 3, ""),
+        String::new(),
+        collisions.to_string(),
+    ]
+}
+
+fn number(value: Option<f64>, digits: usize, unit: &str) -> String {
+    value.map_or_else(|| "–".to_owned(), |x| format!("{x:.digits$}{unit}"))
+}
+
+fn percent(value: Option<f64>) -> String {
+    number(value.map(|x| 100.0 * x), 1, " %")
+}
+
+fn share(value: Option<f64>, interval: Option<Interval>) -> String {
+    let range = interval.map(|[low, high]| format!(" [{:.0}, {:.0}]", 100.0 * low, 100.0 * high));
+    percent(value) + &range.unwrap_or_default()
+}

@@ -1,0 +1,139 @@
+//! `cede evaluate` from the outside: what it prints and with which exit code it ends.
+
+use assert_cmd::Command;
+use serde_json::Value;
+use std::path::Path;
+
+fn cede(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_cede"));
+    command.args(arguments);
+    command
+}
+
+/// `cede evaluate` on a few synthetic encounters.
+fn evaluate(arguments: &[&str]) -> Command {
+    let mut command = cede(&["evaluate", "--data", "synthetic", "--encounters", "60"]);
+    command.args(arguments);
+    command
+}
+
+fn stdout(command: &mut Command) -> String {
+    let output = command.assert().success().get_output().stdout.clone();
+    String::from_utf8(output).unwrap()
+}
+
+fn stderr(command: &mut Command, code: i32) -> String {
+    let output = command.assert().code(code).get_output().stderr.clone();
+    String::from_utf8(output).unwrap()
+}
+
+#[test]
+fn json_is_one_object_with_the_rows() {
+    let text = stdout(&mut evaluate(&[
+        "--driver",
+        "replay,idm",
+        "--split",
+        "all",
+        "--json",
+    ]));
+    let object: Value = serde_json::from_str(&text).unwrap();
+    let rows = object["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 2);
+    for (row, driver) in rows.iter().zip(["replay", "idm"]) {
+        assert_eq!(row["driver"], driver);
+        assert_eq!(row["split"], "all");
+        assert_eq!(row["mode"], "joint");
+        assert_eq!(row["until"], "conflict");
+        assert_eq!(row["shield"], "off");
+        assert!(row["n"].as_u64().unwrap() >= 60);
+        for share in ["priority_accuracy", "episode_length_error"] {
+            assert!((0.0..=1.0).contains(&row[share].as_f64().unwrap()));
+            assert_eq!(
+                row[format!("{share}_interval")].as_array().unwrap().len(),
+                2
+            );
+        }
+        for count in ["collisions", "time_outs"] {
+            assert!(row[count].is_u64());
+        }
+    }
+}
+
+#[test]
+fn threads_change_nothing_but_time() {
+    let arguments = |threads| ["--split", "all", "--until", "cleared", "--threads", threads];
+    let one = stdout(&mut evaluate(&arguments("1")));
+    assert_eq!(one, stdout(&mut evaluate(&arguments("3"))));
+    assert!(one.contains("| logistic"));
+}
+
+#[test]
+fn ego_mode_judges_both_roles() {
+    let arguments = [
+        "--driver", "idm", "--split", "all", "--mode", "ego", "--json",
+    ];
+    let object: Value = serde_json::from_str(&stdout(&mut evaluate(&arguments))).unwrap();
+    let row = &object["rows"][0];
+    let n = row["n"].as_u64().unwrap();
+    assert_eq!(Some(n), row["encounters"].as_u64().map(|n| 2 * n));
+}
+
+#[test]
+fn a_line_an_episode_as_csv_and_as_parquet() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str| {
+        let path = folder.path().join(name);
+        let file = path.to_str().unwrap();
+        let arguments = ["--driver", "idm", "--split", "all", "--episodes", file];
+        evaluate(&arguments).assert().success();
+        path
+    };
+    let csv = std::fs::read_to_string(write("episodes.csv")).unwrap();
+    let header = csv.lines().next().unwrap();
+    assert!(header.starts_with("driver,split,mode,until,shield,site,file,left_track,other_track"));
+    assert!(csv.lines().count() > 60);
+    let parquet = std::fs::read(write("episodes.parquet")).unwrap();
+    assert!(parquet.starts_with(b"PAR1") && parquet.ends_with(b"PAR1"));
+    assert_eq!(
+        rows(&folder.path().join("episodes.parquet")),
+        csv.lines().count() - 1
+    );
+}
+
+fn rows(parquet: &Path) -> usize {
+    use parquet::file::reader::{FileReader, SerializedFileReader};
+    let file = std::fs::File::open(parquet).unwrap();
+    let reader = SerializedFileReader::new(file).unwrap();
+    reader.get_row_iter(None).unwrap().count()
+}
+
+#[test]
+fn usage_errors_name_what_there_is() {
+    let message = stderr(&mut evaluate(&["--driver", "fast"]), 2);
+    assert!(message.contains("no driver is called `fast`"), "{message}");
+    assert!(message.contains("nearer-first"), "{message}");
+    let message = stderr(&mut evaluate(&["--split", "half"]), 2);
+    assert!(message.contains("leave-one-file-out"), "{message}");
+    let message = stderr(&mut evaluate(&["--episodes", "out.txt"]), 2);
+    assert!(message.contains(".parquet"), "{message}");
+    stderr(&mut cede(&["evaluate"]), 2);
+}
+
+#[test]
+fn bad_input_ends_with_code_3_and_the_mend() {
+    let folder = tempfile::tempdir().unwrap();
+    let empty = folder.path().to_str().unwrap();
+    let message = stderr(&mut cede(&["evaluate", "--data", empty]), 3);
+    assert!(
+        message.contains("no recorded tracks of site EP0"),
+        "{message}"
+    );
+    let unwritable = folder.path().join("a-file").join("episodes.csv");
+    std::fs::write(folder.path().join("a-file"), "").unwrap();
+    let file = unwritable.to_str().unwrap();
+    let message = stderr(
+        &mut evaluate(&["--driver", "replay", "--episodes", file]),
+        3,
+    );
+    assert!(message.contains("cannot write"), "{message}");
+}
