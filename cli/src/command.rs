@@ -1,7 +1,9 @@
 //! The subcommands, one module each.
 
+mod data;
 mod demo;
 mod evaluate;
+mod replay;
 mod verify;
 
 use crate::failure::Failure;
@@ -13,8 +15,13 @@ pub(crate) enum Command {
     /// Drive the embedded scenarios, print the table and write the report (the default)
     #[default]
     Demo,
+    /// Read recordings: find their encounters, print and draw what is in them
+    #[command(subcommand)]
+    Data(data::Data),
     /// Judge drivers on recorded or synthetic encounters
     Evaluate(evaluate::Args),
+    /// Show one encounter of a recording, as numbers and as an animated page
+    Replay(replay::Args),
     /// Prove properties of networks, and check proofs
     #[command(subcommand)]
     Verify(verify::Verify),
@@ -24,8 +31,10 @@ impl Command {
     /// Runs the command.
     pub(crate) fn run(self) -> Result<(), Failure> {
         match self {
+            Self::Data(data) => data.run(),
             Self::Demo => demo::run(),
             Self::Evaluate(args) => evaluate::run(&args),
+            Self::Replay(args) => replay::run(&args),
             Self::Verify(verify) => verify.run(),
         }
     }

@@ -5,6 +5,8 @@ mod drivers;
 mod failure;
 mod interrupt;
 mod judge;
+mod report;
+mod scene;
 mod source;
 mod table;
 

@@ -5,7 +5,7 @@ use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 
 /// What the paper's Table II prints for the site EP0: driver, split, n, priority accuracy,
 /// episode length error, collisions.
-const PAPER: [(&str, &str, usize, f64, f64, usize); 6] = [
+pub(crate) const PAPER: [(&str, &str, usize, f64, f64, usize); 6] = [
     ("paper: BC", "train", 215, 0.7209, 0.5540, 1),
     ("paper: SACER-V", "train", 215, 0.6465, 0.2462, 4),
     ("paper: SACER-SVO", "train", 215, 0.8186, 0.3835, 1),

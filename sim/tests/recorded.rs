@@ -1,5 +1,6 @@
 //! The recorded encounters of INTERACTION's EP0 and MA; skipped where the recordings are absent.
 
+use cede_controller::ConflictKind;
 use cede_sim::data::lanelet::LineKind;
 use cede_sim::data::{REST, Split};
 use cede_sim::{Dataset, Encounter, Role, State, advance, clamp_acceleration};
@@ -58,6 +59,24 @@ fn the_train_set_s_known_facts() {
     let steps = || train().map(|e| e.steps);
     assert_eq!((steps().min(), steps().max()), (Some(1), Some(275)));
     assert_eq!(steps().filter(|&steps| steps < 10).count(), 7);
+}
+
+/// Cases like the paper's three: a straight-going vehicle that gives way to the left-turner, one
+/// that does not, and a right-turner that gives way. Read off the files by hand.
+#[test]
+fn who_arrives_first_in_three_named_cases() {
+    let Some(dataset) = load("EP0") else { return };
+    let cases = [
+        ((4, 68, 71), ConflictKind::Crossing, Role::Left, 89, 3.8),
+        ((2, 46, 47), ConflictKind::Crossing, Role::Other, 94, 2.3),
+        ((1, 79, 84), ConflictKind::Merging, Role::Left, 90, 2.9),
+    ];
+    for ((file, left, other), kind, first, steps, pet) in cases {
+        let named = |e: &&Encounter| (e.id.file, e.id.left, e.id.other) == (file, left, other);
+        let case = dataset.encounters.iter().find(named).unwrap();
+        assert_eq!((case.kind, case.first, case.steps), (kind, first, steps));
+        assert!((case.pet - pet).abs() < 1e-3, "{:?}", case.id);
+    }
 }
 
 /// The floor of the simulator's own error: what is left when recorded accelerations are replayed.

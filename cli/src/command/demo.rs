@@ -1,17 +1,21 @@
-//! The bare `cede`: the embedded scenarios, driven and tabulated.
+//! The bare `cede`: the embedded scenarios, driven, tabulated and reported.
 
 use crate::drivers::Drivers;
 use crate::failure::Failure;
 use crate::judge::{ModeName, Plan, UntilName};
+use crate::report::Report;
 use crate::table;
 use cede_controller::Contract;
 use cede_sim::Dataset;
 use cede_sim::data::Split;
 use cede_sim::driver::Baseline;
 use cede_sim::evaluate::Selection;
+use std::path::Path;
 
 /// Encounters of the demo; the drivers are judged on the test split of them.
 const ENCOUNTERS: usize = 1000;
+/// Where the report goes.
+const REPORT: &str = "out/report.html";
 /// Seed of the demo's encounters.
 const SEED: u64 = 1;
 
@@ -22,6 +26,7 @@ pub(crate) fn run() -> Result<(), Failure> {
         "{} synthetic encounters; drivers that learn do so on the training split.\n",
         dataset.encounters.len()
     );
+    let mut report = Report::new(&dataset, "cede");
     let mut rows = Vec::new();
     for until in [UntilName::Conflict, UntilName::Cleared] {
         let plan = Plan {
@@ -34,8 +39,11 @@ pub(crate) fn run() -> Result<(), Failure> {
             shields: vec![None, Some(Contract::ALL_WAY_STOP)],
             seed: SEED,
         };
-        rows.extend(plan.judge(&dataset, |_, _| {})?);
+        rows.extend(plan.judge(&dataset, |row, drives| report.add(row, drives))?);
     }
     print!("{}", table::render(&rows, false));
+    let page = Path::new(REPORT);
+    report.write(page)?;
+    println!("The report, with replays and charts: {REPORT}");
     Ok(())
 }

@@ -5,6 +5,7 @@ mod episodes;
 use crate::drivers::Drivers;
 use crate::failure::Failure;
 use crate::judge::{ContractName, ModeName, Plan, ShieldName, UntilName};
+use crate::report::Report;
 use crate::source::Source;
 use crate::{interrupt, table};
 use cede_sim::Dataset;
@@ -57,6 +58,9 @@ pub(crate) struct Args {
     /// Also write one line an episode, to a file that ends in .csv or .parquet
     #[arg(long, value_name = "FILE")]
     episodes: Option<EpisodeFile>,
+    /// Also write the report: one HTML file with replays and charts
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
 }
 
 /// What `--json` prints.
@@ -80,18 +84,34 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let dataset = args.source.load(args.seed)?;
     let plan = args.plan(&dataset)?;
     let mut records = Vec::new();
+    let mut report = args
+        .report
+        .as_ref()
+        .map(|_| Report::new(&dataset, &Args::command()));
     let rows = plan.judge(&dataset, |row, drives| {
         if args.episodes.is_some() {
             records.extend(episodes::records(row, drives));
+        }
+        if let Some(report) = &mut report {
+            report.add(row, drives);
         }
     })?;
     if let Some(file) = &args.episodes {
         file.write(&records)?;
     }
+    if let (Some(report), Some(path)) = (report, &args.report) {
+        report.write(path)?;
+    }
     args.print(&dataset, &rows)
 }
 
 impl Args {
+    /// What the user typed, for the report.
+    fn command() -> String {
+        let arguments: Vec<String> = std::env::args().skip(1).collect();
+        format!("cede {}", arguments.join(" "))
+    }
+
     fn plan(&self, dataset: &Dataset) -> Result<Plan, Failure> {
         Ok(Plan {
             contenders: self.driver.contenders(self.weights.as_deref())?,

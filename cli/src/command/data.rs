@@ -1,0 +1,43 @@
+//! `cede data`: what is in recordings, and which encounters they hold.
+
+mod extract;
+mod inspect;
+
+use crate::failure::Failure;
+use cede_sim::Dataset;
+use clap::Subcommand;
+
+/// What to do with the data.
+#[derive(Subcommand)]
+pub(crate) enum Data {
+    /// Find the encounters in recorded tracks and write them as CSV
+    Extract(extract::Args),
+    /// Print what is in the recordings and draw the scene
+    Inspect(inspect::Args),
+}
+
+impl Data {
+    /// Runs the command.
+    pub(crate) fn run(&self) -> Result<(), Failure> {
+        match self {
+            Self::Extract(args) => extract::run(args),
+            Self::Inspect(args) => inspect::run(args),
+        }
+    }
+}
+
+/// Says on stderr which files were not read.
+fn name_passed_over(dataset: &Dataset) {
+    for path in &dataset.passed_over {
+        eprintln!("passed over, as it holds pedestrians: {}", path.display());
+    }
+}
+
+fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
+    let text = serde_json::to_string_pretty(value);
+    println!(
+        "{}",
+        text.map_err(|error| Failure::input(error, "report this as a bug"))?
+    );
+    Ok(())
+}

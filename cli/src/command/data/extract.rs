@@ -1,0 +1,118 @@
+//! `cede data extract`: the encounters as rows of a CSV.
+
+use crate::failure::Failure;
+use crate::source::Source;
+use cede_controller::ConflictKind;
+use cede_sim::data::{STEP_MS, Summary};
+use cede_sim::{Dataset, Encounter, Manoeuvre, Role, output};
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Options of `cede data extract`.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    source: Source,
+    /// Write the encounters to this CSV file
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Seed of synthetic encounters
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Print the counts as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// A row of the file: first the columns of INTERACTION's list of selected scenarios, then ours.
+#[derive(Serialize)]
+struct Row<'d> {
+    #[serde(rename = "Scenario")]
+    scenario: &'d str,
+    #[serde(rename = "File_id")]
+    file: String,
+    #[serde(rename = "StartTime_ms")]
+    start_ms: u64,
+    #[serde(rename = "EndTime_ms")]
+    end_ms: u64,
+    #[serde(rename = "Ego_agent_id")]
+    left: u32,
+    #[serde(rename = "Reactive_agent_id")]
+    other: u32,
+    /// The other: who turns left gives way to oncoming traffic, and at an
+    /// all-way stop to whoever arrives at the same time.
+    #[serde(rename = "Agent_with_right_of_way")]
+    right_of_way: u32,
+    #[serde(rename = "First_agent_id")]
+    first: u32,
+    #[serde(rename = "Length_steps")]
+    steps: u32,
+    #[serde(rename = "PET_s")]
+    pet: String,
+    #[serde(rename = "Conflict")]
+    kind: &'static str,
+    #[serde(rename = "Ego_manoeuvre")]
+    left_manoeuvre: Manoeuvre,
+    #[serde(rename = "Reactive_manoeuvre")]
+    other_manoeuvre: Manoeuvre,
+    #[serde(rename = "Conflict_x_m")]
+    x: String,
+    #[serde(rename = "Conflict_y_m")]
+    y: String,
+}
+
+impl<'d> Row<'d> {
+    fn of(scenario: &'d str, encounter: &Encounter) -> Self {
+        let vehicle = |role| encounter.judged(role);
+        Self {
+            scenario,
+            file: format!("{:03}", encounter.id.file),
+            start_ms: encounter.start_ms,
+            end_ms: encounter.start_ms + STEP_MS * u64::from(encounter.steps),
+            left: encounter.id.left,
+            other: encounter.id.other,
+            right_of_way: encounter.id.other,
+            first: vehicle(encounter.first).track,
+            steps: encounter.steps,
+            // Recorded in steps of 0.1 s.
+            pet: format!("{:.1}", encounter.pet),
+            kind: match encounter.kind {
+                ConflictKind::Crossing => "crossing",
+                ConflictKind::Merging => "merging",
+                ConflictKind::Following => "following",
+                ConflictKind::None => "none",
+            },
+            left_manoeuvre: vehicle(Role::Left).manoeuvre,
+            other_manoeuvre: vehicle(Role::Other).manoeuvre,
+            x: format!("{:.3}", encounter.conflict_point.x),
+            y: format!("{:.3}", encounter.conflict_point.y),
+        }
+    }
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let dataset = args.source.load(args.seed)?;
+    super::name_passed_over(&dataset);
+    if let Some(path) = &args.out {
+        output::write(path, |out| {
+            let mut csv = csv::Writer::from_writer(out);
+            for encounter in &dataset.encounters {
+                csv.serialize(Row::of(&dataset.site.folder, encounter))?;
+            }
+            csv.flush()
+        })?;
+    }
+    if args.json {
+        return super::print_json(&Summary::of(&dataset).files);
+    }
+    print_counts(&dataset);
+    Ok(())
+}
+
+fn print_counts(dataset: &Dataset) {
+    for file in Summary::of(dataset).files {
+        println!("file {:03}  {:>4} pairs", file.file, file.encounters);
+    }
+    println!("total     {:>4} pairs", dataset.encounters.len());
+}

@@ -1,0 +1,90 @@
+//! `cede data inspect`: the recordings in numbers and as a drawing.
+
+use crate::failure::Failure;
+use crate::scene;
+use crate::source::Source;
+use cede_sim::data::{Distribution, Summary};
+use std::path::PathBuf;
+
+/// Options of `cede data inspect`.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    source: Source,
+    /// Where the drawing goes
+    #[arg(long, default_value = "out/scene.svg", value_name = "FILE")]
+    draw: PathBuf,
+    /// Seed of synthetic encounters
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Print the numbers as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let dataset = args.source.load(args.seed)?;
+    super::name_passed_over(&dataset);
+    let summary = Summary::of(&dataset);
+    scene::write(&args.draw, &dataset)?;
+    eprintln!("drawn in {}", args.draw.display());
+    if args.json {
+        return super::print_json(&summary);
+    }
+    print(&summary);
+    Ok(())
+}
+
+fn print(summary: &Summary) {
+    println!("{}: {} encounters\n", summary.site, summary.encounters);
+    println!("file  minutes  vehicles  encounters");
+    for file in &summary.files {
+        let minutes = file.duration_s / 60.0;
+        let (vehicles, encounters) = (file.vehicles, file.encounters);
+        println!(
+            "{:>4}  {minutes:>7.1}  {vehicles:>8}  {encounters:>10}",
+            file.file
+        );
+    }
+    let manoeuvres = summary
+        .manoeuvres
+        .iter()
+        .map(|(name, n)| format!("{n} {name}"));
+    println!(
+        "\nall vehicles       {}",
+        manoeuvres.collect::<Vec<_>>().join(", ")
+    );
+    println!("left-turners       {} different", summary.left_turners);
+    println!("others             {} different", summary.others);
+    println!(
+        "conflicts          {} crossing, {} merging",
+        summary.crossing, summary.merging
+    );
+    let share = |name: &str, part: usize| {
+        let percent = 100.0 * part as f64 / summary.encounters.max(1) as f64;
+        println!("{name:<26} {part:>5} ({percent:.1} %)");
+    };
+    share("left-turner first", summary.left_first);
+    share("left-turner starts at rest", summary.left_starts_at_rest);
+    share("other starts at rest", summary.other_starts_at_rest);
+    println!("\n                              mean     min     p10  median     p90     max");
+    row("length, s", &summary.length_s);
+    row("PET, s", &summary.pet_s);
+    row("first speed left, m/s", &summary.left_speed);
+    row("first speed other, m/s", &summary.other_speed);
+    row("first distance left, m", &summary.left_distance_m);
+    row("first distance other, m", &summary.other_distance_m);
+    row("acceleration, m/s²", &summary.acceleration);
+    row("vehicles around", &summary.bystanders);
+    let within = 100.0 * summary.acceleration_within_bounds;
+    println!("\naccelerations within ±3 m/s²: {within:.2} %");
+}
+
+fn row(name: &str, d: &Distribution) {
+    print!("{name:<26}");
+    for value in [d.mean, d.min, d.p10, d.median, d.p90, d.max] {
+        print!("{value:>8.2}");
+    }
+    println!();
+}

@@ -1,0 +1,110 @@
+//! The report: one HTML file that needs no network, with the table, replays and charts.
+//!
+//! The page draws itself from the JSON in it ([`model`]); a section for which
+//! there is no data stays out of sight.
+
+mod cases;
+mod model;
+
+use crate::failure::Failure;
+use cede_sim::data::Split;
+use cede_sim::evaluate::{Drive, Row};
+use cede_sim::{Dataset, Encounter, EncounterId, Role, output};
+use model::{Case, Episodes, Interventions, Page};
+use std::collections::HashMap;
+use std::path::Path;
+
+const PAGE: &str = include_str!("report/page/page.html");
+const STYLE: &str = include_str!("report/page/style.css");
+const SCRIPT: &str = concat!(
+    include_str!("report/page/charts.js"),
+    include_str!("report/page/table.js"),
+    include_str!("report/page/replay.js"),
+    include_str!("report/page/page.js"),
+);
+
+/// Gathers what the page shows, row by row.
+pub(crate) struct Report {
+    page: Page,
+    /// Places of the chosen encounters in the page's cases.
+    chosen: HashMap<EncounterId, usize>,
+}
+
+impl Report {
+    /// A report on `dataset`; `command` is what the user would type to get it again.
+    pub(crate) fn new(dataset: &Dataset, command: &str) -> Self {
+        Self::showing(cases::choose(dataset), dataset, command)
+    }
+
+    /// A report that replays these `encounters` of `dataset`.
+    pub(crate) fn showing(encounters: Vec<&Encounter>, dataset: &Dataset, command: &str) -> Self {
+        let ids = encounters.iter().map(|encounter| encounter.id.clone());
+        Self {
+            chosen: ids.zip(0..).collect(),
+            page: Page {
+                subtitle: subtitle(dataset),
+                provenance: format!("Cede {}. Again: {command}", env!("CARGO_PKG_VERSION")),
+                paper: model::paper(&dataset.site.name),
+                map: dataset.map.as_ref().map(model::Map::of).unwrap_or_default(),
+                cases: encounters.into_iter().map(Case::of).collect(),
+                ..Page::default()
+            },
+        }
+    }
+
+    /// Adds a row of the table, and what its episodes show.
+    pub(crate) fn add(&mut self, row: &Row, drives: &[Drive<'_>]) {
+        let driver = match row.shield.as_str() {
+            "on" => format!("{} + shield", row.driver),
+            _ => row.driver.clone(),
+        };
+        self.page.name(&driver);
+        for drive in drives {
+            if let Some(&place) = self.chosen.get(&drive.encounter.id) {
+                let name = match drive.ego {
+                    None => driver.clone(),
+                    Some(Role::Left) => format!("{driver} as left-turner"),
+                    Some(Role::Other) => format!("{driver} as other"),
+                };
+                self.page.name(&name);
+                self.page.cases[place].add(name, drive);
+            }
+        }
+        let interventions = Interventions::of(&driver, row, drives);
+        self.page.interventions.extend(interventions);
+        self.page
+            .distributions
+            .push(Episodes::of(&driver, row, drives));
+        self.page.rows.push(row.clone());
+    }
+
+    /// Writes the page.
+    pub(crate) fn write(mut self, path: &Path) -> Result<(), Failure> {
+        self.page.cases.retain(Case::was_driven);
+        let data = serde_json::to_string(&self.page)
+            .map_err(|error| Failure::input(error, "report this as a bug"))?;
+        // Inside a script element only `</` would end the data early.
+        let data = data.replace("</", "<\\/");
+
+        let html = PAGE
+            .replace("{{title}}", &self.page.subtitle)
+            .replace("{{style}}", STYLE)
+            .replace("{{script}}", SCRIPT)
+            .replace("{{data}}", &data);
+        output::write(path, |out| out.write_all(html.as_bytes()))?;
+        Ok(())
+    }
+}
+
+fn subtitle(dataset: &Dataset) -> String {
+    let count = |split| dataset.split(split).count();
+    format!(
+        "Site {}: {} encounters in {} recordings ({} train, {} validation, {} test)",
+        dataset.site.name,
+        dataset.encounters.len(),
+        dataset.recordings.len(),
+        count(Split::Train),
+        count(Split::Validation),
+        count(Split::Test),
+    )
+}

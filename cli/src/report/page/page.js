@@ -1,0 +1,67 @@
+// Fills the page from its data; a section without data stays hidden.
+
+"use strict";
+
+// What a test looks for: whether everything was drawn, and what went wrong.
+window.addEventListener("error", (event) => {
+  document.documentElement.dataset.error = event.message;
+});
+
+const report = JSON.parse(document.getElementById("data").textContent);
+
+document.getElementById("subtitle").textContent = report.subtitle;
+document.getElementById("provenance").textContent = report.provenance;
+tables(document.getElementById("tables"), report);
+if (report.cases.length) player(report);
+if (report.distributions.length) distributions(report);
+if (report.interventions.length) interventions(report);
+document.documentElement.dataset.status = "ready";
+
+function distributions({ distributions, drivers }) {
+  const find = (id) => document.getElementById(id);
+  const palette = colours(drivers);
+  const blocks = groupBy(distributions, (d) => d.block);
+  find("block").append(...Array.from(blocks.keys(), (name) => new Option(name, name)));
+  const draw = () => {
+    const block = blocks.get(find("block").value);
+    const recorded = block[0].recorded_pet;
+    const chart = (host, pick, limit, label, extra) => {
+      const series = block.filter((d) => pick(d).length).map((d) => ({
+        points: cumulative(pick(d), d.n, limit), colour: palette.get(d.driver), width: 1.8,
+      }));
+      lineChart(host, { series: [...series, ...extra], x: { label, low: 0, high: limit }, y: { label: "share of episodes", low: 0, high: 1 } });
+    };
+    const dashed = { colour: "var(--ink)", width: 2, dash: "5 4" };
+    // Where episodes end with the first arrival, there is no second one to wait for.
+    find("pet").parentElement.hidden = block.every((d) => d.pet.length === 0);
+    chart(find("pet"), (d) => d.pet, 20, "PET, s", [{ ...dashed, points: cumulative(recorded, recorded.length, 20) }]);
+    chart(find("ttc"), (d) => d.ttc, 8, "smallest TTC, s", []);
+    legend(find("distribution-legend"), [
+      { name: "recorded", colour: "var(--ink)", dash: true },
+      ...block.map((d) => ({ name: d.driver, colour: palette.get(d.driver) })),
+    ]);
+  };
+  const told = distributions.find((d) => d.pet.length > 0);
+  if (told) find("block").value = told.block;
+  find("block").onchange = draw;
+  find("distributions").hidden = false;
+  draw();
+}
+
+function interventions({ interventions, map }) {
+  const find = (id) => document.getElementById(id);
+  find("shielded").append(...interventions.map((d, i) => new Option(`${d.driver} (${d.block})`, i)));
+  find("shield").hidden = false;
+  const draw = () => {
+    const { points, steps, overruled } = interventions[find("shielded").value];
+    const bounds = (pick) => [0, 1].map((i) => pick(...points.map((p) => p[i])));
+    const view = new View(find("interventions"), bounds(Math.min).map((c) => c - 15), bounds(Math.max).map((c) => c + 15));
+    view.clear();
+    view.map(map);
+    for (const point of points) view.dot(point, 2.5, css("--stop"));
+    const share = ((100 * overruled) / steps).toFixed(2);
+    find("causes").textContent = `${overruled} of ${steps} steps (${share} %) were overruled.`;
+  };
+  find("shielded").onchange = draw;
+  draw();
+}

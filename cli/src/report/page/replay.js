@@ -1,0 +1,288 @@
+// Episodes from above, and the same along the routes.
+
+const STEP = 0.1;
+const PALETTE = ["#2563eb", "#d97706", "#059669", "#db2777", "#7c3aed", "#0891b2", "#65a30d", "#a16207", "#64748b", "#dc2626"];
+const PAPER_SIZE = [5, 2];
+
+function colours(names) {
+  return new Map(names.map((name, i) => [name, PALETTE[i % PALETTE.length]]));
+}
+
+const css = (name) => {
+  // A canvas does not know light-dark(); the browser resolves it on an element.
+  const probe = document.createElement("i");
+  probe.style.color = `var(${name})`;
+  document.body.append(probe);
+  const colour = getComputedStyle(probe).color;
+  probe.remove();
+  return colour;
+};
+
+// Position and heading on a route at arc length s; straight on beyond its ends.
+function pose(route, s) {
+  let i = 0, at = 0;
+  for (;;) {
+    const [ax, ay] = route[i], [bx, by] = route[i + 1];
+    const length = Math.hypot(bx - ax, by - ay);
+    if (s <= at + length || i + 2 >= route.length) {
+      const f = (s - at) / length;
+      return { x: ax + f * (bx - ax), y: ay + f * (by - ay), heading: Math.atan2(by - ay, bx - ax) };
+    }
+    at += length;
+    i += 1;
+  }
+}
+
+// The value of a series at a time, between its steps.
+function sample(values, t) {
+  const i = Math.min(Math.max(t / STEP, 0), values.length - 1);
+  const below = Math.floor(i), above = Math.min(below + 1, values.length - 1);
+  return values[below] + (i - below) * (values[above] - values[below]);
+}
+
+class View {
+  constructor(canvas, low, high) {
+    this.canvas = canvas;
+    this.low = low;
+    this.high = high;
+    this.fit();
+  }
+  fit() {
+    const ratio = window.devicePixelRatio || 1;
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    this.canvas.width = width * ratio;
+    this.canvas.height = height * ratio;
+    const [w, h] = [this.high[0] - this.low[0], this.high[1] - this.low[1]];
+    this.scale = Math.min(width / w, height / h);
+    const middle = [(this.low[0] + this.high[0]) / 2, (this.low[1] + this.high[1]) / 2];
+    this.context = this.canvas.getContext("2d");
+    const k = this.scale * ratio;
+    this.context.setTransform(k, 0, 0, -k, (width * ratio) / 2 - k * middle[0], (height * ratio) / 2 + k * middle[1]);
+    this.extent = { x: middle[0] - width / this.scale / 2, y: middle[1] - height / this.scale / 2, w: width / this.scale, h: height / this.scale };
+  }
+  clear() {
+    const { x, y, w, h } = this.extent;
+    this.context.fillStyle = css("--panel");
+    this.context.fillRect(x, y, w, h);
+  }
+  trace(points, close) {
+    const c = this.context;
+    c.beginPath();
+    points.forEach(([x, y], i) => (i ? c.lineTo(x, y) : c.moveTo(x, y)));
+    if (close) c.closePath();
+  }
+  line(points, colour, pixels, dash = []) {
+    const c = this.context;
+    this.trace(points);
+    c.strokeStyle = colour;
+    c.lineWidth = pixels / this.scale;
+    c.setLineDash(dash.map((d) => d / this.scale));
+    c.stroke();
+    c.setLineDash([]);
+  }
+  map(map) {
+    const c = this.context;
+    for (const lane of map.lanes) {
+      this.trace(lane, true);
+      c.fillStyle = css("--lane");
+      c.fill();
+    }
+    const styles = { edge: [css("--edge"), 1.5], solid: [css("--paint"), 1.5], dashed: [css("--paint"), 1.5, [8, 8]], stop: [css("--stop"), 2.5], crosswalk: [css("--paint"), 1.5] };
+    for (const { kind, points } of map.lines) this.line(points, ...styles[kind]);
+  }
+  vehicle({ x, y, heading }, [length, width], { fill, stroke, dash = [] }) {
+    const c = this.context;
+    c.save();
+    c.translate(x, y);
+    c.rotate(heading);
+    c.beginPath();
+    c.roundRect(-length / 2, -width / 2, length, width, 0.45);
+    if (fill) {
+      c.fillStyle = fill;
+      c.fill();
+      // The windscreen tells the front.
+      c.fillStyle = "rgba(255, 255, 255, 0.55)";
+      c.fillRect(length * 0.1, -width * 0.36, length * 0.13, width * 0.72);
+    }
+    if (stroke) {
+      c.beginPath();
+      c.roundRect(-length / 2, -width / 2, length, width, 0.45);
+      c.strokeStyle = stroke;
+      c.lineWidth = 1.5 / this.scale;
+      c.setLineDash(dash.map((d) => d / this.scale));
+      c.stroke();
+      c.setLineDash([]);
+    }
+    c.restore();
+  }
+  dot([x, y], pixels, fill, stroke) {
+    const c = this.context;
+    c.beginPath();
+    c.arc(x, y, pixels / this.scale, 0, 2 * Math.PI);
+    c.fillStyle = fill;
+    c.fill();
+    if (stroke) {
+      c.strokeStyle = stroke;
+      c.lineWidth = 1.5 / this.scale;
+      c.stroke();
+    }
+  }
+}
+
+// The surroundings of the conflict point on both routes.
+function surroundings(item) {
+  const near = item.vehicles.flatMap((v) => v.route).filter(([x, y]) => Math.hypot(x - item.point[0], y - item.point[1]) < 34);
+  near.push(item.point);
+  const bounds = (pick) => [0, 1].map((i) => pick(...near.map((p) => p[i])));
+  return [bounds(Math.min).map((c) => c - 5), bounds(Math.max).map((c) => c + 5)];
+}
+
+function player(report) {
+  const find = (id) => document.getElementById(id);
+  const palette = colours(report.drivers);
+  const [caseSelect, driverSelect, slider, clock] = ["case", "driver", "time", "clock"].map(find);
+  let item, drive, view, charts, horizon, playing = false, last;
+
+  const option = (text, value) => new Option(text, value);
+  caseSelect.append(...report.cases.map((c, i) => option(c.name, i)));
+
+  function choose() {
+    item = report.cases[caseSelect.value];
+    const wanted = driverSelect.value;
+    driverSelect.replaceChildren(...item.drives.map((d) => option(d.driver, d.driver)));
+    driverSelect.value = (item.drives.find((d) => d.driver === wanted) ?? favourite(item.drives)).driver;
+    drive = item.drives.find((d) => d.driver === driverSelect.value);
+    horizon = STEP * (Math.max(...[...item.drives, item.record].map((d) => d.s[0].length)) - 1);
+    slider.max = horizon.toFixed(1);
+    slider.value = Math.min(slider.value, horizon);
+    view = new View(find("scene"), ...surroundings(item));
+    find("outcome").textContent = `Recorded: ${outcome(item.record)}. ${drive.driver}: ${outcome(drive)}.`;
+    drawCharts();
+    draw();
+  }
+
+  // The controller, or whoever does not merely repeat the record.
+  function favourite(drives) {
+    return drives.findLast((d) => d.driver.startsWith("cede")) ?? drives.findLast((d) => d.driver !== "replay") ?? drives[0];
+  }
+
+  function outcome({ first, length, end }) {
+    if (end === "collision") return `collision after ${(length * STEP).toFixed(1)} s`;
+    if (!first) return "nobody arrives in time";
+    return `${first === "left" ? "left-turner" : "other"} first, after ${(length * STEP).toFixed(1)} s`;
+  }
+
+  const styled = (d) => ({
+    colour: palette.get(d.driver),
+    width: d === drive ? 2.6 : 1.3,
+    opacity: d === drive ? 1 : 0.65,
+  });
+  const lines = (pick) => {
+    const points = (d) => pick(d).map((y, k) => [k * STEP, y]);
+    const others = item.drives.filter((d) => d !== drive);
+    return [
+      ...others.map((d) => ({ ...styled(d), points: points(d) })),
+      { points: points(item.record), colour: "var(--ink)", width: 2, dash: "5 4" },
+      { ...styled(drive), points: points(drive) },
+    ];
+  };
+
+  function drawCharts() {
+    const time = { label: "time, s", low: 0, high: horizon };
+    // Once a vehicle is well past the conflict point, its way no longer matters.
+    const until = (values, limit) => {
+      const past = values.findIndex((value) => value > limit);
+      return past < 0 ? values : values.slice(0, past);
+    };
+    const stage = (i) => ({
+      series: lines((d) => until(d.s[i].map((s) => s - item.vehicles[i].conflict_s), 30)),
+      x: time, y: { label: "m" }, height: 228, marks: [{ y: 0, label: "conflict point" }],
+    });
+    const degrees = [0, 45, 90].map((value) => ({ value, label: `${value}°` }));
+    charts = [
+      lineChart(find("st-left"), stage(0)),
+      lineChart(find("st-other"), stage(1)),
+      lineChart(find("svo"), { series: lines((d) => d.svo.map((r) => (r * 180) / Math.PI)), x: time, y: { label: "SVO", low: 0, high: 90, ticks: degrees } }),
+      lineChart(find("speeds"), {
+        series: [0, 1].flatMap((i) => [item.record, drive].map((d) => ({
+          points: d.v[i].map((v, k) => [k * STEP, v]),
+          colour: d === drive ? palette.get(drive.driver) : "var(--ink)",
+          width: d === drive ? 2.2 : 1.4,
+          dash: i ? "5 4" : "none",
+        }))),
+        x: time, y: { label: "m/s", low: 0 },
+      }),
+    ];
+    legend(find("chart-legend"), [
+      { name: "recorded", colour: "var(--ink)", dash: true },
+      ...item.drives.map((d) => ({ name: d.driver, colour: palette.get(d.driver), chosen: d === drive })),
+    ]);
+  }
+
+  function draw() {
+    const t = Number(slider.value);
+    view.clear();
+    view.map(report.map);
+    const roles = [css("--left"), css("--other")];
+    item.vehicles.forEach((v, i) => view.line(v.route, roles[i], 1.2, [4, 5]));
+    for (const { appears, size, route, s } of item.around) {
+      const since = t - appears * STEP;
+      if (since < 0 || since > (s.length - 1) * STEP) continue;
+      view.vehicle(pose(route, sample(s, since)), size, { fill: css("--around") });
+    }
+    view.dot(item.point, 4.5, css("--ink"), css("--panel"));
+    item.vehicles.forEach((v, i) => {
+      view.vehicle(pose(v.route, sample(item.record.s[i], t)), PAPER_SIZE, { stroke: roles[i], dash: [3, 3] });
+      const now = pose(v.route, sample(drive.s[i], t));
+      const overruled = drive.shielded[i].includes(Math.floor(t / STEP));
+      view.vehicle(now, PAPER_SIZE, { fill: roles[i], stroke: overruled ? css("--stop") : undefined });
+      if (overruled) view.dot([now.x, now.y], 4, css("--stop"), css("--panel"));
+    });
+    clock.textContent = `${t.toFixed(1)} / ${horizon.toFixed(1)} s`;
+    for (const chart of charts) chart.at(t);
+  }
+
+  function frame(now) {
+    if (!playing) return;
+    const passed = last === undefined ? 0 : ((now - last) / 1000) * Number(find("speed").value);
+    last = now;
+    const next = Number(slider.value) + passed;
+    slider.step = "any";
+    slider.value = next;
+    if (next >= horizon) stop();
+    draw();
+    requestAnimationFrame(frame);
+  }
+  function stop() {
+    playing = false;
+    find("play").textContent = "▶";
+  }
+  function toggle() {
+    if (playing) return stop();
+    if (Number(slider.value) >= horizon - 1e-6) slider.value = 0;
+    playing = true;
+    last = undefined;
+    find("play").textContent = "❚❚";
+    requestAnimationFrame(frame);
+  }
+
+  const swatch = (colour, name, ghost) => `<span class="swatch${ghost ? " ghost" : ""}" style="${ghost ? "border-color" : "background"}:var(${colour})"></span>${name}`;
+  find("scene-legend").innerHTML = swatch("--left", "left-turner") + swatch("--other", "other") + swatch("--soft", "as recorded", true) + swatch("--around", "traffic around, recorded");
+  caseSelect.onchange = () => { slider.value = 0; choose(); };
+  driverSelect.onchange = choose;
+  slider.oninput = () => { stop(); draw(); };
+  find("play").onclick = toggle;
+  window.addEventListener("resize", () => { view.fit(); draw(); });
+  window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
+  document.addEventListener("keydown", (event) => {
+    if (event.code === "Space" && event.target === document.body) {
+      event.preventDefault();
+      toggle();
+    }
+  });
+  find("replay").hidden = false;
+  choose();
+  // Somewhere in the middle there is more to see than at the start.
+  slider.value = (0.6 * STEP * item.record.length).toFixed(1);
+  draw();
+}

@@ -1,0 +1,106 @@
+// The tables of results, one for each split, mode, end and shield.
+
+const COLUMNS = [
+  { head: "priority accuracy", key: "priority_accuracy", best: Math.max, show: (r) => share(r.priority_accuracy, r.priority_accuracy_interval) },
+  { head: "length error", key: "episode_length_error", best: Math.min, show: (r) => number(r.episode_length_error, 3, r.episode_length_error_interval) },
+  { head: "in s", key: "episode_length_error_s", best: Math.min, show: (r) => number(r.episode_length_error_s, 2) },
+  { head: "collisions", key: "collisions", bad: (r) => r.collisions > 0, show: (r) => [String(r.collisions)] },
+  { head: "time-outs", key: "time_outs", show: (r) => [r.time_outs === undefined ? "" : String(r.time_outs)] },
+  { head: "position error after 3\u00a0s,\u00a0m", key: "position_rmse_3s", best: Math.min, show: (r) => number(r.position_rmse_3s, 2) },
+  { head: "SVO error, rad", key: "svo_rmse", best: Math.min, show: (r) => number(r.svo_rmse, 2) },
+  { head: "TTC <\u00a01.5\u00a0s", key: "critical_ttc_share", show: (r) => percent(r.critical_ttc_share) },
+  { head: "jerk, m/s³", key: "jerk_rms", show: (r) => number(r.jerk_rms, 1) },
+  { head: "shielded steps", key: "shielded_steps", show: (r) => percent(r.shielded_steps) },
+];
+
+const known = (value) => value !== null && value !== undefined;
+
+function number(value, digits, interval) {
+  if (!known(value)) return [""];
+  if (!known(interval)) return [value.toFixed(digits)];
+  const small = document.createElement("small");
+  small.textContent = `[${interval.map((v) => v.toFixed(digits)).join(", ")}]`;
+  return [value.toFixed(digits), small];
+}
+
+function percent(value) {
+  return [known(value) ? `${(100 * value).toFixed(1)} %` : ""];
+}
+
+function share(value, interval) {
+  if (!known(value)) return [""];
+  const text = `${(100 * value).toFixed(1)} %`;
+  if (!known(interval)) return [text];
+  const small = document.createElement("small");
+  small.textContent = `[${interval.map((v) => (100 * v).toFixed(1)).join(", ")}]`;
+  return [text, small, whisker(value, interval)];
+}
+
+// The interval on a scale from 0 to 1.
+function whisker(value, [low, high]) {
+  const svg = node("svg", { class: "whisker", width: 64, height: 12, viewBox: "0 0 64 12" });
+  const x = (v) => 2 + 60 * v;
+  node("line", { x1: 2, x2: 62, y1: 6, y2: 6, style: "stroke:var(--line)" }, svg);
+  node("line", { x1: x(low), x2: x(high), y1: 6, y2: 6, style: "stroke:var(--soft)", "stroke-width": 2 }, svg);
+  node("circle", { cx: x(value), cy: 6, r: 3.5, style: "fill:var(--ink)" }, svg);
+  return svg;
+}
+
+function blockName(row) {
+  const until = row.until === "conflict" ? "until the first arrival" : "until both have left the conflict zone";
+  const mode = row.mode === "joint" ? "one driver for both vehicles" : "a driver for one vehicle at a time";
+  return `${row.split}: ${row.encounters} encounters, ${mode}, ${until}, shield ${row.shield}`;
+}
+
+const blockKey = (row) => [row.split, row.mode, row.until, row.shield].join("/");
+
+function tables(host, { rows, paper }) {
+  const blocks = Map.groupBy ? Map.groupBy(rows, blockKey) : groupBy(rows, blockKey);
+  for (const block of blocks.values()) {
+    const title = document.createElement("h3");
+    title.textContent = blockName(block[0]);
+    const beside = paper.filter((p) => p.split === block[0].split && block[0].mode === "joint" && block[0].until === "conflict");
+    const wrap = document.createElement("div");
+    wrap.className = "scroll";
+    wrap.append(table(block, beside));
+    host.append(title, wrap);
+  }
+}
+
+function groupBy(items, key) {
+  const groups = new Map();
+  for (const item of items) {
+    const k = key(item);
+    if (!groups.has(k)) groups.set(k, []);
+    groups.get(k).push(item);
+  }
+  return groups;
+}
+
+function table(rows, paper) {
+  const table = document.createElement("table");
+  const all = [...rows, ...paper];
+  const shown = COLUMNS.filter((c) => all.some((r) => known(r[c.key])) && !(c.key === "shielded_steps" && all.every((r) => !r.shielded_steps)));
+  const head = table.createTHead().insertRow();
+  for (const name of ["driver", "n", ...shown.map((c) => c.head)]) {
+    const cell = document.createElement("th");
+    cell.textContent = name;
+    head.append(cell);
+  }
+  const body = table.createTBody();
+  for (const row of all) {
+    const line = body.insertRow();
+    if (paper.includes(row)) line.className = "paper";
+    line.insertCell().textContent = row.driver;
+    line.insertCell().textContent = row.n;
+    for (const column of shown) {
+      const cell = line.insertCell();
+      cell.append(...column.show(row));
+      if (column.bad?.(row)) cell.className = "bad";
+      // The replayed record is the floor, not a competitor.
+      const rivals = rows.filter((r) => r.driver !== "replay" && known(r[column.key])).map((r) => r[column.key]);
+      if (column.best && rivals.length > 1 && row.driver !== "replay" && row[column.key] === column.best(...rivals)) cell.className = "best";
+    }
+  }
+  return table;
+}

@@ -1,0 +1,104 @@
+//! `cede data` and `cede replay`: what they print, what they write, how they fail.
+
+use assert_cmd::Command;
+use std::path::Path;
+
+fn cede(folder: &Path, arguments: &[&str]) -> assert_cmd::assert::Assert {
+    let mut command = Command::cargo_bin("cede").unwrap();
+    command.current_dir(folder).args(arguments).assert()
+}
+
+/// A left-turner from the south and an oncoming vehicle that goes first, as a generic CSV.
+fn tracks() -> String {
+    let mut csv = String::from("track,t,x,y\n");
+    for step in 0..150 {
+        let t = f64::from(step) * 0.1;
+        csv += &format!("2,{t:.1},-2,{:.3}\n", 30.0 - 8.0 * t);
+        let way = 5.03 * t - 40.0;
+        let (x, y) = if way < 0.0 {
+            (2.0, way - 4.0)
+        } else {
+            (2.0 - way, -4.0 + 0.01 * way)
+        };
+        csv += &format!("1,{t:.1},{x:.3},{y:.3}\n");
+    }
+    csv
+}
+
+#[test]
+fn the_encounters_of_a_generic_file() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("tracks_3.csv"), tracks()).unwrap();
+    let found = cede(
+        folder.path(),
+        &[
+            "data",
+            "extract",
+            "--data",
+            ".",
+            "--site",
+            "X",
+            "--out",
+            "pairs.csv",
+        ],
+    );
+    let counts = String::from_utf8(found.success().get_output().stdout.clone()).unwrap();
+    assert_eq!(counts, "file 003     1 pairs\ntotal        1 pairs\n");
+    let pairs = std::fs::read_to_string(folder.path().join("pairs.csv")).unwrap();
+    insta::assert_snapshot!(pairs, @"");
+    let replay = [
+        "replay",
+        "tracks_3.csv",
+        "--site",
+        "X",
+        "--out",
+        "page.html",
+    ];
+    let shown = cede(folder.path(), &replay).success();
+    let shown = String::from_utf8(shown.get_output().stdout.clone()).unwrap();
+    assert!(
+        shown.starts_with("Left-turner 1, other 2: other first"),
+        "{shown}"
+    );
+    assert!(folder.path().join("page.html").is_file());
+}
+
+#[test]
+fn numbers_and_a_drawing_of_synthetic_encounters() {
+    let folder = tempfile::tempdir().unwrap();
+    let inspect = [
+        "data",
+        "inspect",
+        "--data",
+        "synthetic",
+        "--encounters",
+        "50",
+        "--json",
+    ];
+    let numbers = cede(folder.path(), &inspect).success();
+    let numbers: serde_json::Value = serde_json::from_slice(&numbers.get_output().stdout).unwrap();
+    assert!(numbers["encounters"].as_u64().unwrap() >= 50);
+    let drawing = std::fs::read_to_string(folder.path().join("out/scene.svg")).unwrap();
+    assert!(drawing.starts_with("<svg") && drawing.contains("<circle"));
+}
+
+#[test]
+fn bad_input_ends_with_code_3_and_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let broken = tracks().replacen("2,0.5,-2", "2,0.5,west", 1);
+    std::fs::write(folder.path().join("tracks.csv"), broken).unwrap();
+    let extract = ["data", "extract", "--data", ".", "--out", "pairs.csv"];
+    let failed = cede(folder.path(), &extract).code(3);
+    let message = String::from_utf8(failed.get_output().stderr.clone()).unwrap();
+    assert!(
+        message.contains("tracks.csv:12: column `x`: `west` is not a number"),
+        "{message}"
+    );
+    assert!(
+        message.contains("write a plain decimal number"),
+        "{message}"
+    );
+    assert!(!folder.path().join("pairs.csv").exists());
+    let named = ["replay", "tracks.csv", "--pair", "one"];
+    cede(folder.path(), &named).code(2);
+}
