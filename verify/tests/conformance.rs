@@ -88,22 +88,14 @@ fn reinforcement_learning_benchmarks_agree_and_their_proofs_are_checked() {
 }
 
 #[test]
-fn collision_avoidance_networks_of_the_first_kind_agree() {
-    if let Some(folder) = folder("acasxu") {
-        agree(&instances(&folder, |line| line.contains("run2a_1_")), false);
-    }
-}
-
-/// `cargo test --release -p cede-verify --test conformance -- --ignored`
-#[test]
-#[ignore = "minutes without optimisation"]
-fn all_collision_avoidance_networks_agree() {
+fn collision_avoidance_networks_agree() {
     if let Some(folder) = folder("acasxu") {
         agree(&instances(&folder, |_| true), false);
     }
 }
 
-/// As above: the checker's passes are dense, so this takes minutes even with optimisation.
+/// The checker's passes are dense, so this takes minutes even with optimisation:
+/// `cargo test --release -p cede-verify --test conformance -- --ignored`
 #[test]
 #[ignore = "minutes"]
 fn proofs_of_collision_avoidance_networks_are_checked() {
