@@ -39,7 +39,10 @@ fn inference(c: &mut Criterion<CpuTime>) {
         let mut group = c.benchmark_group(format!("8-{width}-{width}-{width}-4"));
         for (name, run) in &mut runs {
             let outputs = run(&X).expect("the peer runs");
-            let close = outputs.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-5);
+            let close = outputs
+                .iter()
+                .zip(expected)
+                .all(|(a, b)| (a - b).abs() < 1e-5);
             assert!(close, "{name} gives {outputs:?}, Cede {expected:?}");
             group.bench_function(*name, |b| b.iter(|| run(black_box(&X))));
         }

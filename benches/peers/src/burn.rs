@@ -14,7 +14,10 @@ pub fn burn(layers: &[Layer]) -> Result<Run, Failure> {
         .map(|layer| {
             let weights = TensorData::new(layer.weights.clone(), layer.shape);
             let biases = TensorData::new(layer.biases.clone(), [1, layer.shape[1]]);
-            (Tensor::from_data(weights, &device), Tensor::from_data(biases, &device))
+            (
+                Tensor::from_data(weights, &device),
+                Tensor::from_data(biases, &device),
+            )
         })
         .collect();
     Ok(Box::new(move |inputs| {
@@ -25,7 +28,10 @@ pub fn burn(layers: &[Layer]) -> Result<Run, Failure> {
                 x = relu(x);
             }
         }
-        let outputs = x.into_data().to_vec::<f32>().map_err(|error| format!("{error:?}"))?;
+        let outputs = x
+            .into_data()
+            .to_vec::<f32>()
+            .map_err(|error| format!("{error:?}"))?;
         outputs.try_into().map_err(|_| "not four outputs".into())
     }))
 }

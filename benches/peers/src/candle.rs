@@ -12,8 +12,12 @@ pub fn candle(layers: &[Layer]) -> Result<Run, Failure> {
     let layers: Vec<(Tensor, Tensor)> = layers
         .iter()
         .map(|layer| {
-            let weights = Tensor::from_slice(&layer.weights, (layer.shape[0], layer.shape[1]), &device)?;
-            Ok((weights, Tensor::from_slice(&layer.biases, (1, layer.shape[1]), &device)?))
+            let weights =
+                Tensor::from_slice(&layer.weights, (layer.shape[0], layer.shape[1]), &device)?;
+            Ok((
+                weights,
+                Tensor::from_slice(&layer.biases, (1, layer.shape[1]), &device)?,
+            ))
         })
         .collect::<Result<_, Failure>>()?;
     Ok(Box::new(move |inputs| {

@@ -12,7 +12,9 @@ use cede_controller::weights::Aligned;
 pub fn cede(layers: &[Layer]) -> Run {
     let width = layers[0].shape[1];
     let mut words = Box::new(Aligned([0; Mlp::words(INPUTS, 128)]));
-    let values = layers.iter().flat_map(|layer| layer.biases.iter().chain(&layer.weights));
+    let values = layers
+        .iter()
+        .flat_map(|layer| layer.biases.iter().chain(&layer.weights));
     for (word, value) in words.0.iter_mut().zip(values) {
         *word = value.to_bits();
     }

@@ -36,11 +36,18 @@ pub fn layers(width: usize) -> Vec<Layer> {
         state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
         (f32::from((state >> 16) as u16) / 32768.0 - 1.0) / (width as f32).sqrt()
     };
-    [[INPUTS, width], [width, width], [width, width], [width, OUTPUTS]]
-        .map(|shape| Layer {
-            shape,
-            weights: std::iter::repeat_with(&mut weight).take(shape[0] * shape[1]).collect(),
-            biases: std::iter::repeat_with(&mut weight).take(shape[1]).collect(),
-        })
-        .into()
+    [
+        [INPUTS, width],
+        [width, width],
+        [width, width],
+        [width, OUTPUTS],
+    ]
+    .map(|shape| Layer {
+        shape,
+        weights: std::iter::repeat_with(&mut weight)
+            .take(shape[0] * shape[1])
+            .collect(),
+        biases: std::iter::repeat_with(&mut weight).take(shape[1]).collect(),
+    })
+    .into()
 }

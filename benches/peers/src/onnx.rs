@@ -4,8 +4,8 @@ use crate::{INPUTS, Layer, OUTPUTS};
 use prost::Message;
 use tract_onnx::pb::tensor_shape_proto::{Dimension, dimension::Value};
 use tract_onnx::pb::{
-    GraphProto, ModelProto, NodeProto, OperatorSetIdProto, TensorProto, TensorShapeProto, TypeProto,
-    ValueInfoProto, tensor_proto::DataType, type_proto,
+    GraphProto, ModelProto, NodeProto, OperatorSetIdProto, TensorProto, TensorShapeProto,
+    TypeProto, ValueInfoProto, tensor_proto::DataType, type_proto,
 };
 
 /// The model's bytes; its input is `x`, its output `y`.
@@ -21,10 +21,20 @@ pub fn onnx(layers: &[Layer]) -> Vec<u8> {
     for (i, layer) in layers.iter().enumerate() {
         let last = i + 1 == layers.len();
         let (weights, biases) = (format!("w{i}"), format!("b{i}"));
-        graph.initializer.push(tensor(&weights, &layer.shape, &layer.weights));
-        graph.initializer.push(tensor(&biases, &layer.shape[1..], &layer.biases));
-        let to = if last { "y".to_owned() } else { format!("z{i}") };
-        graph.node.push(node("Gemm", vec![from, weights, biases], &to));
+        graph
+            .initializer
+            .push(tensor(&weights, &layer.shape, &layer.weights));
+        graph
+            .initializer
+            .push(tensor(&biases, &layer.shape[1..], &layer.biases));
+        let to = if last {
+            "y".to_owned()
+        } else {
+            format!("z{i}")
+        };
+        graph
+            .node
+            .push(node("Gemm", vec![from, weights, biases], &to));
         from = to;
         if !last {
             let to = format!("a{i}");
