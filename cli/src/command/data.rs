@@ -2,6 +2,7 @@
 
 mod extract;
 mod inspect;
+mod synthesize;
 
 use crate::failure::Failure;
 use cede_sim::Dataset;
@@ -14,6 +15,8 @@ pub(crate) enum Data {
     Extract(extract::Args),
     /// Print what is in the recordings and draw the scene
     Inspect(inspect::Args),
+    /// Write synthetic recordings, maps and scene descriptions
+    Synthesize(synthesize::Args),
 }
 
 impl Data {
@@ -22,6 +25,7 @@ impl Data {
         match self {
             Self::Extract(args) => extract::run(args),
             Self::Inspect(args) => inspect::run(args),
+            Self::Synthesize(args) => synthesize::run(args),
         }
     }
 }

@@ -1,0 +1,39 @@
+//! `cede data synthesize`: synthetic recordings as files.
+
+use crate::failure::Failure;
+use std::path::PathBuf;
+
+/// Options of `cede data synthesize`.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Folder for the recordings, maps and scene descriptions
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// At least so many encounters (whole recordings are written)
+    #[arg(long, default_value_t = 1000, value_name = "N")]
+    encounters: usize,
+    /// The same seed gives the same files
+    #[arg(long, default_value_t = 0, value_name = "S")]
+    seed: u64,
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let sites = cede_sim::synthetic::write(&args.out, args.encounters, args.seed)?;
+    println!("site          recordings  encounters");
+    for site in &sites {
+        let (name, files) = (&site.name, site.files.len());
+        println!("{name:<12}  {files:>10}  {:>10}", site.encounters);
+    }
+    let total: usize = sites.iter().map(|site| site.encounters).sum();
+    println!("{total} encounters in {}", args.out.display());
+    if let Some(site) = sites.first() {
+        let description = args.out.join(format!("{}.toml", site.name));
+        eprintln!(
+            "read a site with: --data {} --site {}",
+            args.out.display(),
+            description.display()
+        );
+    }
+    Ok(())
+}
