@@ -4,10 +4,11 @@ use crate::conflict::ConflictKind;
 use crate::decision::{Decision, Outlook};
 use crate::geometry::{Footprint, Point};
 use crate::observation::{Fault, Observation, Vehicle};
-use crate::pair::{Leader, Pair, Part, Party};
+use crate::pair::{Pair, Part, Party};
 use crate::policy::Policy;
 use crate::scene::{Meeting, Scene};
 use crate::shield::{Contract, ContractError, Shield};
+use crate::surroundings::{Around, Surroundings};
 use core::f32::consts::FRAC_PI_4;
 
 /// Acceleration (m/s²) that is proposed when there is nobody left to meet.
@@ -42,6 +43,8 @@ pub struct Controller<'w, const N: usize> {
     part: Part,
     /// The ego's SVO towards each other at the last step.
     orientations: [f32; N],
+    /// See [`Controller::set_surroundings`].
+    around: Surroundings,
 }
 
 impl<'w, const N: usize> Controller<'w, N> {
@@ -55,6 +58,7 @@ impl<'w, const N: usize> Controller<'w, N> {
             shield: Shield::new(contract)?,
             part,
             orientations: [FRAC_PI_4; N],
+            around: Surroundings::default(),
         })
     }
 
@@ -62,6 +66,12 @@ impl<'w, const N: usize> Controller<'w, N> {
     #[must_use]
     pub const fn shield(&self) -> &Shield<N> {
         &self.shield
+    }
+
+    /// Tells the policy of traffic that is not in the scene, for the decisions to come; the shield
+    /// considers the scene alone.
+    pub const fn set_surroundings(&mut self, around: Surroundings) {
+        self.around = around;
     }
 
     /// The ego's acceleration for the period that begins.
@@ -102,8 +112,8 @@ impl<'w, const N: usize> Controller<'w, N> {
     }
 
     fn propose(&mut self, scene: &Scene<N>, seen: &Observation<N>) -> (f32, Option<Outlook>) {
-        let leader = leader(scene, seen);
         let mut proposal = (FREE, None);
+        let around = self.around;
         let others = scene.meetings().iter().zip(seen.others.iter());
         for ((number, last_svo), (meeting, other)) in
             (0_u8..).zip(self.orientations.iter_mut()).zip(others)
@@ -112,10 +122,11 @@ impl<'w, const N: usize> Controller<'w, N> {
             if !ahead(meeting, &seen.ego, other) {
                 continue;
             }
-            let (_, leader) = leader.filter(|&(who, _)| who != number).unzip();
+            let surroundings = surroundings(scene, seen, number).nearest(around);
             let pair = Pair {
                 ego: Party {
-                    leader,
+                    leader: surroundings.leader,
+                    crosser: surroundings.crosser,
                     ..party(
                         &seen.ego,
                         scene.exit(),
@@ -157,6 +168,7 @@ fn party(vehicle: &Vehicle, exit: Point, conflict: f32, footprint: Footprint) ->
         distance: conflict - vehicle.s,
         footprint,
         leader: None,
+        crosser: None,
     }
 }
 
@@ -168,20 +180,17 @@ fn ahead(meeting: &Meeting, ego: &Vehicle, other: &Vehicle) -> bool {
         .any(|zone| meets(zone.kind) && ego.s < zone.ego.to && other.s < zone.other.to)
 }
 
-/// The nearest other ahead in the ego's lane, and its number.
-fn leader<const N: usize>(scene: &Scene<N>, seen: &Observation<N>) -> Option<(u8, Leader)> {
-    let mut nearest: Option<(u8, Leader)> = None;
+/// What all the others but number `except` are to the ego.
+fn surroundings<const N: usize>(
+    scene: &Scene<N>,
+    seen: &Observation<N>,
+    except: u8,
+) -> Surroundings {
     let others = scene.meetings().iter().zip(seen.others.iter());
-    for (number, (meeting, other)) in (0_u8..).zip(others) {
-        let Some(other) = other else { continue };
-        for zone in meeting.zones().filter(|zone| zone.is_lane()) {
-            let gap = zone.lead.from - (seen.ego.s - other.s);
-            let there = zone.other.contains(other.s) && gap >= 0.0;
-            if there && nearest.is_none_or(|(_, leader)| gap < leader.gap) {
-                let speed = other.speed;
-                nearest = Some((number, Leader { gap, speed }));
-            }
-        }
-    }
-    nearest
+    let around = (0_u8..).zip(others).filter(|&(number, _)| number != except);
+    let there = around.filter_map(|(_, (meeting, other))| {
+        let Vehicle { s, speed, .. } = (*other)?;
+        Some(Around { meeting, s, speed })
+    });
+    Surroundings::new(seen.ego.s, there)
 }

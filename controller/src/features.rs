@@ -1,10 +1,10 @@
 //! What the network is told about a [`Pair`], and how it is scaled.
 
 use crate::conflict::ConflictKind;
-use crate::pair::{Leader, Pair, Party, RightOfWay};
+use crate::pair::{Crosser, Leader, Pair, Party, RightOfWay};
 
 /// Most features that a set has.
-pub const MAX_FEATURES: usize = 18;
+pub const MAX_FEATURES: usize = 19;
 
 /// A normalised feature is limited to ± this, so that no input whatsoever overflows the network.
 pub const LIMIT: f32 = 8.0;
@@ -36,11 +36,16 @@ pub enum FeatureSet {
     /// `Route`, then gap (m, at most [`HORIZON`]) and speed (m/s) of the ego's leader and of the
     /// other's; a leader that is not there is far ahead and as fast as its follower.
     Traffic,
+    /// `Route`, then what the ego alone knows of its surroundings: gap and speed of its leader as in
+    /// `Traffic`; its distance (m) to where a third vehicle's route meets its own, that vehicle's
+    /// distance (m) and speed (m/s), distances within ± [`HORIZON`]; a third vehicle that is not there
+    /// is far away and at rest.
+    Scene,
 }
 
 impl FeatureSet {
     /// Every set, in the order of their codes in the weights file.
-    pub const ALL: [Self; 3] = [Self::Raw, Self::Route, Self::Traffic];
+    pub const ALL: [Self; 4] = [Self::Raw, Self::Route, Self::Traffic, Self::Scene];
 
     /// Number of features, at most [`MAX_FEATURES`].
     #[must_use]
@@ -49,6 +54,7 @@ impl FeatureSet {
             Self::Raw => 8,
             Self::Route => 14,
             Self::Traffic => 18,
+            Self::Scene => 19,
         }
     }
 
@@ -59,6 +65,7 @@ impl FeatureSet {
             Self::Raw => "raw",
             Self::Route => "route",
             Self::Traffic => "traffic",
+            Self::Scene => "scene",
         }
     }
 
@@ -77,6 +84,13 @@ impl FeatureSet {
                     .into_iter()
                     .chain(leader(&pair.ego))
                     .chain(leader(&pair.other)),
+            ),
+            Self::Scene => fill(
+                &mut features,
+                route(pair)
+                    .into_iter()
+                    .chain(leader(&pair.ego))
+                    .chain(crosser(&pair.ego)),
             ),
         }
         features
@@ -153,6 +167,23 @@ fn leader(party: &Party) -> [f32; 2] {
     [within(gap, HORIZON), speed]
 }
 
+fn crosser(party: &Party) -> [f32; 3] {
+    let Crosser {
+        distance,
+        its_distance,
+        its_speed,
+    } = party.crosser.unwrap_or(Crosser {
+        distance: HORIZON,
+        its_distance: HORIZON,
+        its_speed: 0.0,
+    });
+    [
+        within(distance, HORIZON),
+        within(its_distance, HORIZON),
+        its_speed,
+    ]
+}
+
 /// `value` limited to ± `limit`; NaN becomes −`limit`. Comparisons, not `f32::min` and `max`, whose
 /// result on ±0 and NaN differs between processors.
 #[must_use]
@@ -206,7 +237,7 @@ mod tests {
             speed: 1.0,
         });
         let f = FeatureSet::Traffic.of(&pair);
-        assert_eq!(f[14..], [4.0, 1.0, HORIZON, 8.0]);
+        assert_eq!(f[14..18], [4.0, 1.0, HORIZON, 8.0]);
     }
 
     #[test]

@@ -19,6 +19,8 @@ pub struct Party {
     pub footprint: Footprint,
     /// The vehicle ahead of it in its lane, if there is one.
     pub leader: Option<Leader>,
+    /// The third vehicle that will first be where its route meets this one's, if there is one.
+    pub crosser: Option<Crosser>,
 }
 
 /// The vehicle ahead in the same lane.
@@ -28,6 +30,17 @@ pub struct Leader {
     pub gap: f32,
     /// The leader's speed in m/s, never negative.
     pub speed: f32,
+}
+
+/// A third vehicle whose route meets a vehicle's own, and that has not yet left the place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crosser {
+    /// Metres that the vehicle still has to where the routes meet; negative once past it.
+    pub distance: f32,
+    /// Metres that the third one still has to it.
+    pub its_distance: f32,
+    /// The third one's speed in m/s, never negative.
+    pub its_speed: f32,
 }
 
 /// Who may go first, by the rules of the road and the order of arrival.
@@ -119,6 +132,7 @@ pub(crate) mod testing {
             distance,
             footprint: Footprint::PAPER,
             leader: None,
+            crosser: None,
         };
         let (east, north, west) = (
             Point::new(1.0, 0.0),

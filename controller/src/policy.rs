@@ -84,7 +84,7 @@ mod tests {
     use crate::features::FeatureSet;
     use crate::geometry::{Footprint, Point, Pose};
     use crate::pair::testing::pair;
-    use crate::pair::{Leader, Party, RightOfWay};
+    use crate::pair::{Crosser, Leader, Party, RightOfWay};
     use crate::weights::testing::file;
     use proptest::prelude::*;
 
@@ -115,6 +115,7 @@ mod tests {
                 distance,
                 footprint: Footprint { length, width },
                 leader: follows.then_some(Leader { gap, speed: leads }),
+                crosser: follows.then_some(Crosser { distance: gap, its_distance: leads, its_speed: speed }),
             }
         }
     }

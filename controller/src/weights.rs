@@ -6,7 +6,7 @@
 //! |---|---|
 //! | 1 | the letters `CEDE` |
 //! | 1 | version of the format, 1 |
-//! | 1 | [`FeatureSet`]: 0 raw, 1 route, 2 traffic |
+//! | 1 | [`FeatureSet`]: 0 raw, 1 route, 2 traffic, 3 scene |
 //! | 1 | [`Perspective`]: 0 joint, 1 ego |
 //! | 3 | sizes: inputs I, width H of the hidden layers, outputs, 4 |
 //! | 8 | provenance: a SHA-256 of what the network was made from |
@@ -435,7 +435,7 @@ mod tests {
     fn each_field_is_checked() {
         assert_eq!(forged(0, 1), WeightsError::Magic);
         assert_eq!(forged(1, 2), WeightsError::Unknown);
-        assert_eq!(forged(2, 3), WeightsError::Unknown);
+        assert_eq!(forged(2, 4), WeightsError::Unknown);
         assert_eq!(forged(3, 2), WeightsError::Unknown);
         for width in [0, 15, 17, 32, 144, u32::MAX] {
             assert_eq!(forged(5, width), WeightsError::Shape);

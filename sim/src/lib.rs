@@ -16,6 +16,7 @@ pub mod metrics;
 pub mod output;
 pub mod overlap;
 pub mod reward;
+pub mod sight;
 pub mod statistics;
 pub mod synthetic;
 pub mod transparency;
@@ -27,3 +28,4 @@ pub use encounter::{Encounter, EncounterId, Manoeuvre, Participant, Role, Sample
 pub use judge::Judge;
 pub use kinematics::{advance, clamp_acceleration};
 pub use overlap::OrientedBox;
+pub use sight::{Bystanders, Sight};

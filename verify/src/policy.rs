@@ -30,7 +30,7 @@ pub struct Subject<'a> {
 
 /// The policy's features are not functions of the state that properties speak of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("properties need a network over the features `route` or `traffic`, not `raw`")]
+#[error("properties need a network over the features `route`, `traffic` or `scene`, not `raw`")]
 pub struct UnsupportedFeatures;
 
 impl<'a> Subject<'a> {

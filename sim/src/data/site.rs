@@ -27,6 +27,10 @@ pub struct Site {
     /// Which files serve for what.
     #[serde(default)]
     pub split: Files,
+    /// Whether every two vehicles whose ways cross or merge make a pair, not only left-turners
+    /// and those that they meet: more to learn from, but not what a site is judged on.
+    #[serde(default)]
+    pub every_pair: bool,
     #[serde(default, rename = "arm")]
     arms: Vec<Arm>,
     #[serde(default, rename = "movement")]
@@ -141,6 +145,7 @@ impl Site {
             name: name.to_owned(),
             folder: name.to_owned(),
             split: Files::default(),
+            every_pair: false,
             arms: Vec::new(),
             movements: Vec::new(),
             conflicts: Vec::new(),
@@ -182,6 +187,9 @@ impl Site {
     /// How `left` and `other` conflict if their polylines cross; `None` if they do not make a pair.
     #[must_use]
     pub fn conflict(&self, left: &Track, other: &Track) -> Option<ConflictKind> {
+        if self.every_pair {
+            return conflict_of_any(left, other);
+        }
         if self.conflicts.is_empty() {
             return conflict_by_headings(left, other);
         }
@@ -209,6 +217,19 @@ fn by_turn(turn: f64) -> Manoeuvre {
         degrees if degrees.abs() < 40.0 => Manoeuvre::Straight,
         _ => Manoeuvre::Unknown,
     }
+}
+
+/// The conflict of any two vehicles that come from different sides; each pair is told once.
+fn conflict_of_any(one: &Track, other: &Track) -> Option<ConflictKind> {
+    let apart = |a: RawState, b: RawState| wrap(a.heading - b.heading).abs().to_degrees();
+    let once = one.id < other.id;
+    let sides = apart(one.first(), other.first()) >= SAME_EXIT_DEGREES;
+    let merging = apart(one.last(), other.last()) < SAME_EXIT_DEGREES;
+    (once && sides).then_some(if merging {
+        ConflictKind::Merging
+    } else {
+        ConflictKind::Crossing
+    })
 }
 
 fn conflict_by_headings(left: &Track, other: &Track) -> Option<ConflictKind> {

@@ -2,12 +2,14 @@
 
 use super::{Driver, DriverFactory, State, View};
 use crate::encounter::{Encounter, Role};
+use crate::sight::Bystanders;
 use cede_controller::{
     Cause, Contract, ContractError, Controller, Decision, Footprint, Observation, Part, Path,
-    Policy, Scene, Vehicle,
+    Policy, Scene, Surroundings, Vehicle,
 };
 
-/// Cede: a policy behind the shield. Each vehicle considers the one that it meets.
+/// Cede: a policy behind the shield. Each vehicle considers the one that it meets;
+/// its policy also knows the traffic around them.
 #[derive(Clone, Debug)]
 pub struct Cede {
     policy: Policy<'static>,
@@ -36,6 +38,7 @@ impl DriverFactory for Cede {
             (Ok(controller), Some(scene)) => Box::new(Seat {
                 controller,
                 scene,
+                bystanders: Bystanders::new(encounter, ego),
                 last: None,
             }),
             // The contract was checked; without a vehicle to meet there is nothing to decide.
@@ -80,14 +83,24 @@ pub fn observe(view: &View<'_>) -> Option<Observation<1>> {
     })
 }
 
+/// What the bystanders are to vehicle `view.ego` now.
+pub(super) fn around(bystanders: &Bystanders, view: &View<'_>) -> Surroundings {
+    view.own().map_or_else(Surroundings::default, |(_, state)| {
+        bystanders.around(view.encounter, view.step as usize, state.s)
+    })
+}
+
 struct Seat {
     controller: Controller<'static, 1>,
     scene: Scene<1>,
+    bystanders: Bystanders,
     last: Option<Decision>,
 }
 
 impl Driver for Seat {
     fn accelerate(&mut self, view: &View<'_>) -> f32 {
+        self.controller
+            .set_surroundings(around(&self.bystanders, view));
         self.last = observe(view).map(|seen| self.controller.decide(&self.scene, &seen));
         self.last.map_or(0.0, |decision| decision.acceleration)
     }

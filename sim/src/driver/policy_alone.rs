@@ -1,8 +1,9 @@
 //! The controller's policy without its shield: what the shield is compared with.
 
-use super::controller::part;
+use super::controller::{around, part};
 use super::{Driver, DriverFactory, View, observe, scene};
 use crate::encounter::Encounter;
+use crate::sight::Bystanders;
 use cede_controller::{Contract, Controller, Policy, Scene};
 
 /// Cede without the shield: for comparison, never for a vehicle.
@@ -29,12 +30,14 @@ impl DriverFactory for PolicyAlone {
         let controller = Controller::new(self.policy, Contract::WORST_CASE, part(ego));
         Box::new(Alone {
             seat: controller.ok().zip(scene(encounter, ego)),
+            bystanders: Bystanders::new(encounter, ego),
         })
     }
 }
 
 struct Alone {
     seat: Option<(Controller<'static, 1>, Scene<1>)>,
+    bystanders: Bystanders,
 }
 
 impl Driver for Alone {
@@ -42,6 +45,7 @@ impl Driver for Alone {
         let Some((controller, scene)) = &mut self.seat else {
             return 0.0;
         };
+        controller.set_surroundings(around(&self.bystanders, view));
         observe(view).map_or(0.0, |seen| controller.proposal(scene, &seen))
     }
 }

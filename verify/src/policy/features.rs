@@ -28,7 +28,7 @@ pub struct Setting {
 const SINGLE: f64 = 16.0 * (f32::EPSILON as f64) * 0.5;
 
 /// The features over (ego distance, ego speed, other distance, other speed) with what the `f32`
-/// computation may add, before normalisation. No leaders.
+/// computation may add, before normalisation. Nobody around the pair.
 fn features(set: FeatureSet, state: [Dual; STATE], setting: &Setting) -> Option<Vec<(Dual, f64)>> {
     let [d, v, other_d, other_v] = state;
     let exact = |dual: Dual| (dual, 0.0);
@@ -80,7 +80,12 @@ fn features(set: FeatureSet, state: [Dual; STATE], setting: &Setting) -> Option<
                 all.extend([exact(Dual::constant(f64::from(HORIZON))), exact(own)]);
             }
         }
-        _ => return None,
+        FeatureSet::Scene => {
+            let far = f64::from(HORIZON);
+            all.extend([exact(Dual::constant(far)), exact(v)]);
+            all.extend([far, far, 0.0].map(|nobody| exact(Dual::constant(nobody))));
+        }
+        FeatureSet::Raw => return None,
     }
     Some(all)
 }

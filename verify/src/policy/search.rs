@@ -319,6 +319,7 @@ pub(super) fn pair([d, v, other_d, other_v]: [f64; 4], setting: &Setting) -> Pai
         distance: distance as f32,
         footprint: Footprint::PAPER,
         leader: None,
+        crosser: None,
     };
     Pair {
         ego: party(d, v, setting.turns[0]),

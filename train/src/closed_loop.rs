@@ -1,0 +1,334 @@
+//! The differentiable closed loop: two vehicles driven by one network for some steps, and the way back.
+
+use crate::inputs::Inputs;
+use crate::network::{Delta, Network, Tape};
+use crate::slopes::slopes;
+use cede_controller::policy::MAX_ACCELERATION;
+use cede_controller::{Footprint, Pair};
+use cede_sim::Sight;
+use cede_sim::encounter::STEP;
+use cede_sim::kinematics::advance;
+use cede_sim::overlap::OrientedBox;
+use cede_sim::{Encounter, Role, State};
+use serde::{Deserialize, Serialize};
+
+/// Where one place of a batch begins.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Start {
+    /// Which encounter.
+    pub encounter: usize,
+    /// Steps since its start.
+    pub step: usize,
+    /// The two vehicles' states.
+    #[serde(with = "states")]
+    pub states: [State; 2],
+}
+
+/// What it costs, a step, to drive unlike the recorded humans.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Cost {
+    /// Metres up to which an error in position costs half its square; beyond, it costs in proportion.
+    pub huber: f32,
+    /// Weight of the squared error in speed, in s².
+    pub speed: f32,
+    /// Weight of the squared error of what each expects of the other's acceleration, in s⁴.
+    pub expectation: f32,
+    /// Weight of arriving out of the recorded order: metres that the first is short of its conflict
+    /// point, times metres that the second is too near to its own.
+    pub order: f32,
+    /// Weight of the squared shortfall of the distance between the footprints.
+    pub contact: f32,
+    /// Metres between the footprints below which closeness costs.
+    pub gap: f32,
+}
+
+impl Default for Cost {
+    fn default() -> Self {
+        Self {
+            huber: 1.0,
+            speed: 0.3,
+            expectation: 0.02,
+            order: 10.0,
+            contact: 20.0,
+            gap: 0.5,
+        }
+    }
+}
+
+/// Metres by which the second vehicle should be short of its conflict point when the first arrives,
+/// and the most that the first one's own shortfall counts.
+const ORDER_MARGIN: f32 = 2.0;
+/// Steps past the recorded end up to which the order counts.
+const ORDER_OVERTIME: usize = 20;
+/// Footprints whose centres are farther apart (m) cannot be near contact.
+const OUT_OF_REACH: f32 = 7.0;
+
+/// Derivatives of a cost with respect to the states (s, v) of both vehicles.
+type ByStates = [[f32; 2]; 2];
+
+/// One roll-out of a batch and its way back.
+#[derive(Clone, Debug, Default)]
+pub struct ClosedLoop {
+    steps: Vec<Step>,
+    last: Vec<[State; 2]>,
+    inputs: Vec<f32>,
+    delta: Delta,
+}
+
+/// One step of a batch.
+#[derive(Clone, Debug, Default)]
+struct Step {
+    /// States before the step.
+    states: Vec<[State; 2]>,
+    /// What each vehicle saw.
+    pairs: Vec<[Pair; 2]>,
+    tape: Tape,
+    /// For each vehicle its own acceleration and the one that it expects of the other.
+    commands: Vec<[[f32; 2]; 2]>,
+}
+
+impl ClosedLoop {
+    /// Drives every place for `horizon` steps with `network`, each vehicle from its own perspective.
+    pub fn drive(
+        &mut self,
+        network: &Network,
+        inputs: &Inputs,
+        sights: &[Sight<'_>],
+        places: &[Start],
+        horizon: usize,
+    ) {
+        self.steps.resize_with(horizon, Step::default);
+        self.last.clear();
+        self.last.extend(places.iter().map(|place| place.states));
+        let mut svo = vec![Sight::FIRST_SVO; places.len()];
+        for (t, step) in self.steps.iter_mut().enumerate() {
+            step.states.clone_from(&self.last);
+            step.pairs.clear();
+            self.inputs.clear();
+            for (place, (states, svo)) in places.iter().zip(step.states.iter().zip(&mut svo)) {
+                let pairs = sights[place.encounter].pairs(place.step + t, *states, *svo);
+                *svo = pairs[0].svo();
+                pairs
+                    .iter()
+                    .for_each(|pair| inputs.append(pair, &mut self.inputs));
+                step.pairs.push(pairs);
+            }
+            let output = network.forward(&self.inputs, &mut step.tape);
+            let command =
+                |row: &[f32]| [row[0], row[1]].map(|mean| MAX_ACCELERATION * libm::tanhf(mean));
+            let width = output.len() / (2 * places.len());
+            step.commands.clear();
+            let both = output.chunks_exact(2 * width);
+            step.commands
+                .extend(both.map(|row| [command(&row[..width]), command(&row[width..])]));
+            for (states, commands) in self.last.iter_mut().zip(&step.commands) {
+                *states = [0, 1].map(|i| advance(states[i], commands[i][0]));
+            }
+        }
+    }
+
+    /// The states after the last step.
+    #[must_use]
+    pub fn last(&self) -> &[[State; 2]] {
+        &self.last
+    }
+
+    /// Adds the derivatives of the places' total cost (each the mean over its steps) with respect to
+    /// the network's parameters to `gradient`, and returns that cost. To follow [`ClosedLoop::drive`]
+    /// with the same arguments.
+    pub fn back(
+        &mut self,
+        network: &Network,
+        inputs: &Inputs,
+        sights: &[Sight<'_>],
+        places: &[Start],
+        cost: &Cost,
+        gradient: &mut [f32],
+    ) -> f32 {
+        let horizon = self.steps.len();
+        let share = 1.0 / horizon as f32;
+        let width = network.sizes()[network.sizes().len() - 1];
+        let mut total = 0.0;
+        let mut by = vec![ByStates::default(); places.len()];
+        for t in (0..horizon).rev() {
+            let (step, after) = (&self.steps[t], self.steps.get(t + 1));
+            let after = after.map_or(&self.last, |next| &next.states);
+            self.delta.values.clear();
+            for (k, place) in places.iter().enumerate() {
+                let encounter = sights[place.encounter].encounter;
+                total +=
+                    share * cost.of(encounter, place.step + t + 1, after[k], share, &mut by[k]);
+                for (i, by) in by[k].iter_mut().enumerate() {
+                    let [own, expected] = step.commands[k][i];
+                    let (by_state, by_own) = through(step.states[k][i], own, *by);
+                    *by = by_state;
+                    let surprise = expected - step.commands[k][1 - i][0];
+                    let by_expected = share * 2.0 * cost.expectation * surprise;
+                    let squash = |a: f32| MAX_ACCELERATION - a * a / MAX_ACCELERATION;
+                    self.delta
+                        .values
+                        .extend([by_own * squash(own), by_expected * squash(expected)]);
+                    self.delta.values.extend((2..width).map(|_| 0.0));
+                }
+            }
+            network.backward(&step.tape, &mut self.delta, Some(gradient));
+            self.delta.to_states(inputs, &step.pairs, &mut by);
+        }
+        total
+    }
+}
+
+impl Delta {
+    /// Takes derivatives with respect to a network's inputs on to the states that `pairs` show.
+    fn to_states(&self, inputs: &Inputs, pairs: &[[Pair; 2]], by: &mut [ByStates]) {
+        let count = inputs.scales.len();
+        let mut rows = self.values.chunks_exact(count);
+        for (pairs, by) in pairs.iter().zip(by) {
+            for (i, pair) in pairs.iter().enumerate() {
+                let slopes = slopes(inputs.features(), pair);
+                let scaled = rows.next().unwrap_or(&[]).iter().zip(&inputs.scales);
+                let mut sums = [0.0; 4];
+                for ((d, scale), slope) in scaled.zip(slopes) {
+                    for (sum, slope) in sums.iter_mut().zip(slope) {
+                        *sum += d * scale * slope;
+                    }
+                }
+                // A vehicle's distance to its conflict point shrinks as its arc length grows.
+                by[i][0] -= sums[0];
+                by[i][1] += sums[1];
+                by[1 - i][0] -= sums[2];
+                by[1 - i][1] += sums[3];
+            }
+        }
+    }
+}
+
+impl Cost {
+    /// The cost of being in `states` at `step` of `encounter`; adds its derivatives times `share` to `by`.
+    fn of(
+        &self,
+        encounter: &Encounter,
+        step: usize,
+        states: [State; 2],
+        share: f32,
+        by: &mut ByStates,
+    ) -> f32 {
+        let mut own = ByStates::default();
+        let total = self.imitation(encounter, step, states, &mut own)
+            + self.disorder(encounter, step, states, &mut own)
+            + self.closeness(encounter, states, &mut own);
+        for (by, own) in by.iter_mut().flatten().zip(own.iter().flatten()) {
+            *by += share * own;
+        }
+        total
+    }
+
+    /// Distance from the record in position and speed, while it lasts.
+    fn imitation(
+        &self,
+        encounter: &Encounter,
+        step: usize,
+        states: [State; 2],
+        by: &mut ByStates,
+    ) -> f32 {
+        let mut total = 0.0;
+        for i in 0..2 {
+            let Some(record) = encounter.participants[i].record.get(step) else {
+                continue;
+            };
+            let (ahead, faster) = (states[i].s - record.s, states[i].v - record.v);
+            let clamped = ahead.clamp(-self.huber, self.huber);
+            total += clamped * (ahead - 0.5 * clamped) + self.speed * faster * faster;
+            by[i][0] += clamped;
+            by[i][1] += 2.0 * self.speed * faster;
+        }
+        total
+    }
+
+    /// The vehicle that was first in the record has not arrived, and the other is about to.
+    fn disorder(
+        &self,
+        encounter: &Encounter,
+        step: usize,
+        states: [State; 2],
+        by: &mut ByStates,
+    ) -> f32 {
+        if self.order == 0.0 || step > encounter.steps as usize + ORDER_OVERTIME {
+            return 0.0;
+        }
+        let (first, second) = match encounter.first {
+            Role::Left => (0, 1),
+            Role::Other => (1, 0),
+        };
+        let distance = |i: usize| encounter.participants[i].conflict_s - states[i].s;
+        let (late, near) = (distance(first), ORDER_MARGIN - distance(second));
+        if late <= 0.0 || near <= 0.0 {
+            return 0.0;
+        }
+        let counted = late.min(ORDER_MARGIN);
+        by[second][0] += self.order * counted;
+        if late < ORDER_MARGIN {
+            by[first][0] -= self.order * near;
+        }
+        self.order * counted * near
+    }
+
+    /// The footprints are closer to each other than they should be.
+    fn closeness(&self, encounter: &Encounter, states: [State; 2], by: &mut ByStates) -> f32 {
+        let area = |i: usize, ds: f32| {
+            let pose = encounter.participants[i].route.pose(states[i].s + ds);
+            OrientedBox::new(pose, Footprint::PAPER)
+        };
+        let (a, b) = (area(0, 0.0), area(1, 0.0));
+        let near = a.centre.distance(b.centre) < OUT_OF_REACH;
+        let short = self.gap - a.separation(&b);
+        if self.contact == 0.0 || !near || short <= 0.0 {
+            return 0.0;
+        }
+        let h = 0.05;
+        let slopes = [
+            area(0, h).separation(&b) - area(0, -h).separation(&b),
+            a.separation(&area(1, h)) - a.separation(&area(1, -h)),
+        ];
+        for i in 0..2 {
+            by[i][0] -= self.contact * 2.0 * short * slopes[i] / (2.0 * h);
+        }
+        self.contact * short * short
+    }
+}
+
+/// Derivatives before a step of the kinematics, with respect to (s, v) and to the acceleration, from
+/// those after it.
+///
+/// A vehicle that comes to rest within the step does not answer to a small change of its
+/// acceleration; if the cost calls for more speed, the derivative passes all the same (a
+/// straight-through estimate), or else no network would learn to leave a place where it stands.
+fn through(state: State, acceleration: f32, by: [f32; 2]) -> ([f32; 2], f32) {
+    let [by_s, by_v] = by;
+    let by_acceleration = by_s * 0.5 * STEP * STEP + by_v * STEP;
+    if state.v + acceleration * STEP >= 0.0 {
+        return ([by_s, by_s * STEP + by_v], by_acceleration);
+    }
+    let wanted = if by_acceleration < 0.0 {
+        by_acceleration
+    } else {
+        0.0
+    };
+    ([by_s, by_s * state.v / -acceleration], wanted)
+}
+
+/// `cede_sim`'s states as four numbers.
+pub(crate) mod states {
+    use cede_sim::State;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub(crate) fn serialize<S: Serializer>(states: &[State; 2], to: S) -> Result<S::Ok, S::Error> {
+        states.map(|state| (state.s, state.v)).serialize(to)
+    }
+
+    pub(crate) fn deserialize<'d, D: Deserializer<'d>>(from: D) -> Result<[State; 2], D::Error> {
+        let states = <[(f32, f32); 2]>::deserialize(from)?;
+        Ok(states.map(|(s, v)| State { s, v }))
+    }
+}
