@@ -4,6 +4,7 @@ mod data;
 mod demo;
 mod evaluate;
 mod replay;
+mod train;
 mod verify;
 
 use crate::failure::Failure;
@@ -22,6 +23,8 @@ pub(crate) enum Command {
     Evaluate(evaluate::Args),
     /// Show one encounter of a recording, as numbers and as an animated page
     Replay(replay::Args),
+    /// Train a policy
+    Train(train::Args),
     /// Prove properties of networks, and check proofs
     #[command(subcommand)]
     Verify(verify::Verify),
@@ -35,6 +38,7 @@ impl Command {
             Self::Demo => demo::run(),
             Self::Evaluate(args) => evaluate::run(&args),
             Self::Replay(args) => replay::run(&args),
+            Self::Train(args) => train::run(&args),
             Self::Verify(verify) => verify.run(),
         }
     }

@@ -16,6 +16,7 @@ pub mod gaussian;
 pub mod inputs;
 pub mod judge;
 pub mod learner;
+pub mod log;
 pub mod matmul;
 pub mod network;
 pub mod pilot;

@@ -1,0 +1,381 @@
+//! `cede train`: from encounters to a weights file.
+
+use crate::failure::Failure;
+use crate::interrupt;
+use crate::source::Source;
+use cede_sim::data::Split;
+use cede_sim::{Dataset, Encounter, Sight, output};
+use cede_train::checkpoint::{Checkpoint, CheckpointError};
+use cede_train::episodes::Course;
+use cede_train::judge::judge;
+use cede_train::log::Log;
+use cede_train::network::Tape;
+use cede_train::provenance::{Provenance, data_hash};
+use cede_train::run::{Algorithm, Lessons, Report, Run, Settings};
+use clap::builder::PossibleValue;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Options of `cede train`.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// How to learn
+    #[arg(value_enum)]
+    algorithm: Choice,
+    #[command(flatten)]
+    source: Source,
+    /// Seed of the synthetic encounters; training has its own
+    #[arg(long, default_value_t = 1, value_name = "SEED")]
+    data_seed: u64,
+    /// Also learn from every two vehicles of the training files whose ways cross or merge
+    #[arg(long)]
+    every_pair: bool,
+    /// Seed of every random choice of the training
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Settings that differ from the defaults, as TOML
+    #[arg(long, value_name = "FILE.toml")]
+    settings: Option<PathBuf>,
+    /// One setting that differs, as in `--set width=128` or `--set rates.policy=3e-4`; repeatable
+    #[arg(long, value_name = "NAME=VALUE")]
+    set: Vec<String>,
+    /// The weights file to write; its provenance goes beside it, to FILE.txt, and checkpoints to
+    /// FILE.checkpoint
+    #[arg(long, value_name = "FILE.cede")]
+    out: PathBuf,
+    /// Folder for the training curves: CSV, and TensorBoard's event file
+    #[arg(long, value_name = "DIR")]
+    log: Option<PathBuf>,
+    /// Go on from the last checkpoint of the same run
+    #[arg(long)]
+    resume: bool,
+    /// Print the algorithm's settings as TOML and stop
+    #[arg(long)]
+    show_settings: bool,
+    /// Number of threads; the result does not depend on it [default: all cores]
+    #[arg(long)]
+    threads: Option<usize>,
+}
+
+/// An algorithm by its name.
+#[derive(Clone, Copy)]
+struct Choice(Algorithm);
+
+impl clap::ValueEnum for Choice {
+    fn value_variants<'a>() -> &'a [Self] {
+        const ALL: [Choice; 5] = {
+            let [a, b, c, d, e] = Algorithm::ALL;
+            [Choice(a), Choice(b), Choice(c), Choice(d), Choice(e)]
+        };
+        &ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.0.name()))
+    }
+}
+
+/// Time between two checkpoints.
+const CHECKPOINT_EVERY: Duration = Duration::from_secs(30);
+/// Time between two judgements for the progress bar.
+const JUDGE_EVERY: Duration = Duration::from_secs(5);
+/// Encounters of the judgement for the progress bar.
+const JUDGED: usize = 60;
+
+/// Runs the command.
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    interrupt::defer();
+    if let Some(threads) = args.threads {
+        // Fails only if the pool is there already: nothing has used it yet.
+        let _ = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build_global();
+    }
+    let settings = args.settings()?;
+    if args.show_settings {
+        print!("{}", settings.text());
+        return Ok(());
+    }
+    let dataset = args.source.load(args.data_seed)?;
+    let own: Vec<&Encounter> = dataset.split(Split::Train).collect();
+    if own.is_empty() {
+        return Err(Failure::input(
+            "there is nothing to learn from: no encounters in the training files",
+            "add training files to the folder, or name another site",
+        ));
+    }
+    let more = args.more(&dataset);
+    let encounters = || own.iter().copied().chain(&more);
+    let hash = data_hash(encounters());
+    let lessons = Lessons {
+        courses: match settings {
+            Settings::Sac(_) => own.iter().map(|e| Course::new(e)).collect(),
+            _ => Vec::new(),
+        },
+        sights: encounters().map(Sight::new).collect(),
+        own: own.len(),
+    };
+    let mut run = args.begin(&settings, &lessons, hash)?;
+    args.advance(&mut run, &settings, &lessons, hash)?;
+    let provenance = args.provenance(&settings, encounters().count(), hash);
+    args.write(&run, &provenance)
+}
+
+impl Args {
+    fn settings(&self) -> Result<Settings, Failure> {
+        let mut settings = self.algorithm.0.settings();
+        if let Some(path) = &self.settings {
+            let text = std::fs::read_to_string(path).map_err(|error| {
+                let problem = format!("cannot read {}: {error}", path.display());
+                Failure::input(problem, "check the path")
+            })?;
+            settings = with(&settings, &text, &path.display().to_string())?;
+        }
+        for set in &self.set {
+            settings = with(&settings, &quoted(set), "--set")?;
+        }
+        Ok(settings)
+    }
+
+    /// What to learn from beside the encounters themselves.
+    fn more(&self, dataset: &Dataset) -> Vec<Encounter> {
+        if !self.every_pair {
+            return Vec::new();
+        }
+        let mut site = dataset.site.clone();
+        site.every_pair = true;
+        let all = Dataset::new(site, dataset.recordings.clone());
+        all.split(Split::Train).cloned().collect()
+    }
+
+    fn log(&self) -> Result<Option<Log>, Failure> {
+        let open = |folder: &PathBuf| {
+            Log::open(folder, self.resume).map_err(|error| unwritable(folder, &error))
+        };
+        self.log.as_ref().map(open).transpose()
+    }
+
+    fn checkpoint(&self) -> PathBuf {
+        self.out.with_extension("checkpoint")
+    }
+
+    fn begin<'e>(
+        &self,
+        settings: &Settings,
+        lessons: &'e Lessons<'e>,
+        data: [u8; 32],
+    ) -> Result<Run<'e>, Failure> {
+        if !self.resume {
+            return Ok(Run::new(settings.clone(), lessons, self.seed));
+        }
+        let path = self.checkpoint();
+        let checkpoint = Checkpoint::load(&path).map_err(|error| {
+            let mend = match error {
+                CheckpointError::Read { .. } => "leave out --resume to begin anew",
+                CheckpointError::Content { .. } => "delete it and leave out --resume to begin anew",
+            };
+            Failure::input(error, mend)
+        })?;
+        let same = checkpoint.data == data
+            && checkpoint.algorithm == self.algorithm.0.name()
+            && checkpoint.seed == self.seed
+            && checkpoint.settings == settings.text();
+        if !same {
+            return Err(Failure::input(
+                format!("{} belongs to another run", path.display()),
+                "give the same algorithm, data, seed and settings, or leave out --resume",
+            ));
+        }
+        Ok(Run::resume(checkpoint.progress, lessons))
+    }
+
+    fn advance(
+        &self,
+        run: &mut Run<'_>,
+        settings: &Settings,
+        lessons: &Lessons<'_>,
+        data: [u8; 32],
+    ) -> Result<(), Failure> {
+        let save = |run: &Run<'_>| {
+            Checkpoint {
+                data,
+                algorithm: self.algorithm.0.name().to_owned(),
+                seed: self.seed,
+                settings: settings.text(),
+                progress: run.progress(),
+            }
+            .save(&self.checkpoint())
+        };
+        let mut log = self.log()?;
+        let mut bar = Bar::new(lessons);
+        let mut saved = Instant::now();
+        while let Some(report) = run.advance() {
+            bar.show(&report, run);
+            if let (Some(log), Some(folder)) = (&mut log, &self.log) {
+                let added = log.add(report.done, &report.scalars);
+                added.map_err(|error| unwritable(folder, &error))?;
+            }
+            if let Err(stop) = interrupt::check() {
+                save(run)?;
+                bar.finish();
+                eprintln!(
+                    "saved to {}; go on with --resume",
+                    self.checkpoint().display()
+                );
+                return Err(stop);
+            }
+            if saved.elapsed() > CHECKPOINT_EVERY {
+                save(run)?;
+                saved = Instant::now();
+            }
+        }
+        bar.finish();
+        Ok(())
+    }
+
+    fn provenance(&self, settings: &Settings, encounters: usize, hash: [u8; 32]) -> Provenance {
+        let synthetic = self.source.data == "synthetic";
+        let data = if synthetic {
+            format!("synthetic, seed {}", self.data_seed)
+        } else {
+            format!("recordings of {}", self.source.site)
+        };
+        let mut command = format!("cede train {}", self.algorithm.0.name());
+        if synthetic {
+            command += &format!(
+                " --data synthetic --encounters {} --data-seed {}",
+                self.source.encounters, self.data_seed
+            );
+        } else {
+            command += &format!(" --data DIR --site {}", self.source.site);
+        }
+        if self.every_pair {
+            command += " --every-pair";
+        }
+        command += &format!(" --seed {}", self.seed);
+        for set in &self.set {
+            command += &format!(" --set {set}");
+        }
+        if self.settings.is_some() {
+            command += " --settings FILE.toml";
+        }
+        Provenance {
+            algorithm: self.algorithm.0.name().to_owned(),
+            settings: settings.text(),
+            seed: self.seed,
+            data,
+            encounters,
+            data_hash: hash,
+            command: command + " --out FILE.cede",
+        }
+    }
+
+    fn write(&self, run: &Run<'_>, provenance: &Provenance) -> Result<(), Failure> {
+        let words = run.pilot().weights(provenance.hash()).map_err(|error| {
+            let problem = format!("the trained network is not usable: {error}");
+            Failure::input(problem, "lower the learning rates, or change the width")
+        })?;
+        write(&self.out, &words)?;
+        output::write(&self.out.with_extension("txt"), |file| {
+            file.write_all(provenance.text().as_bytes())
+        })?;
+        // The run is over, so its checkpoint has served.
+        let _ = std::fs::remove_file(self.checkpoint());
+        println!("{}", self.out.display());
+        Ok(())
+    }
+}
+
+/// `name=word` as TOML, which wants quotes around a word.
+fn quoted(set: &str) -> String {
+    match set.split_once('=') {
+        Some((name, value)) if set.parse::<toml::Table>().is_err() => format!("{name}=\"{value}\""),
+        _ => set.to_owned(),
+    }
+}
+
+fn unwritable(folder: &Path, error: &std::io::Error) -> Failure {
+    let problem = format!("cannot write to {}: {error}", folder.display());
+    Failure::input(problem, "free some space or name another folder")
+}
+
+fn with(settings: &Settings, text: &str, origin: &str) -> Result<Settings, Failure> {
+    let wrong = |error: toml::de::Error| {
+        let problem = format!("{origin}: {}", error.to_string().trim_end());
+        Failure::input(
+            problem,
+            "see all settings and their defaults with --show-settings",
+        )
+    };
+    let table: toml::Table = text.parse().map_err(wrong)?;
+    settings.with(&table).map_err(wrong)
+}
+
+fn write(path: &Path, words: &[u32]) -> Result<(), Failure> {
+    output::write(path, |file| {
+        words
+            .iter()
+            .try_for_each(|word| file.write_all(&word.to_le_bytes()))
+    })?;
+    Ok(())
+}
+
+/// Progress on stderr, unseen where that is no terminal.
+struct Bar<'l> {
+    bar: ProgressBar,
+    lessons: &'l Lessons<'l>,
+    judged: Option<Instant>,
+    score: String,
+    begun: Instant,
+    episodes: u64,
+    updates: u64,
+}
+
+impl<'l> Bar<'l> {
+    fn new(lessons: &'l Lessons<'l>) -> Self {
+        let bar = ProgressBar::new(0);
+        let style = ProgressStyle::with_template("{bar:30} {percent} % {eta} left, {msg}");
+        Self {
+            bar: style.map_or_else(|_| bar.clone(), |style| bar.clone().with_style(style)),
+            lessons,
+            judged: None,
+            score: String::new(),
+            begun: Instant::now(),
+            episodes: 0,
+            updates: 0,
+        }
+    }
+
+    fn show(&mut self, report: &Report, run: &Run<'_>) {
+        self.episodes += report.episodes;
+        self.updates += report.updates;
+        self.bar.set_length(report.total);
+        self.bar.set_position(report.done);
+        if self.bar.is_hidden() {
+            return;
+        }
+        if self.judged.is_none_or(|last| last.elapsed() > JUDGE_EVERY) {
+            let (pilot, mut tape) = (run.pilot(), Tape::default());
+            let some = &self.lessons.sights[..self.lessons.own.min(JUDGED)];
+            let score = judge(some, |pairs| pilot.drive(pairs, &mut tape));
+            self.score = format!(
+                "priority accuracy {:.0} %, length error {:.2}",
+                100.0 * score.priority_accuracy,
+                score.length_error
+            );
+            self.judged = Some(Instant::now());
+        }
+        let seconds = self.begun.elapsed().as_secs_f64().max(1e-3);
+        self.bar.set_message(format!(
+            "{:.0} episodes/s, {:.0} updates/s, {}",
+            self.episodes as f64 / seconds,
+            self.updates as f64 / seconds,
+            self.score
+        ));
+    }
+
+    fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
