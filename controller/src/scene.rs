@@ -59,7 +59,7 @@ pub struct Meeting {
     pub other_footprint: Footprint,
     /// Who goes first if both arrive at once; unsettled unless [`Scene::set_right_of_way`] says so.
     pub right_of_way: RightOfWay,
-    zones: Zones,
+    pub(crate) zones: Zones,
 }
 
 impl Meeting {
@@ -133,6 +133,11 @@ impl<const N: usize> Scene<N> {
     #[must_use]
     pub fn meetings(&self) -> &[Meeting] {
         &self.meetings
+    }
+
+    #[cfg(test)]
+    pub(crate) fn meetings_mut(&mut self) -> &mut [Meeting] {
+        &mut self.meetings
     }
 
     /// The ego's footprint.

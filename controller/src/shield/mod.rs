@@ -14,6 +14,8 @@ mod precedence;
 pub mod reach;
 pub mod real;
 pub mod rules;
+#[cfg(test)]
+mod tests;
 
 pub use contract::{Contract, ContractError};
 pub use plan::Plan;

@@ -11,6 +11,7 @@ pub use scenario::{Scenario, Setup};
 
 use crate::driver::State;
 use crate::encounter::STEP;
+use crate::judge::Judge;
 use crate::kinematics::advance;
 use crate::overlap::OrientedBox;
 use adversary::Adversary;
@@ -56,25 +57,38 @@ impl Tally {
     }
 }
 
-/// Says which vehicles touch: the simulator's own box test, or another judge.
-pub trait Overlap {
-    /// Whether vehicle `i` touches `j`; all of one moment are asked before the next begins.
-    fn touching(&mut self, poses: &[Pose], i: usize, j: usize) -> bool;
+/// Says whether vehicles touch: the simulator's own box test, or rapier2d ([`Judge`]).
+pub trait Referee {
+    /// Whether one of the first `egos` vehicles touches any other; called once a moment.
+    fn collision(&mut self, poses: &[Pose], egos: usize) -> bool;
 }
 
 /// The simulator's own box test.
 #[derive(Clone, Copy, Debug)]
 pub struct Boxes;
 
-impl Overlap for Boxes {
-    fn touching(&mut self, poses: &[Pose], i: usize, j: usize) -> bool {
-        match (poses.get(i), poses.get(j)) {
-            (Some(&a), Some(&b)) => {
-                let paper = |pose| OrientedBox::new(pose, Footprint::PAPER);
-                paper(a).overlaps(&paper(b))
-            }
-            _ => false,
+impl Referee for Boxes {
+    fn collision(&mut self, poses: &[Pose], egos: usize) -> bool {
+        let covers = |&pose: &Pose| OrientedBox::new(pose, Footprint::PAPER);
+        let touches = |i: usize| {
+            let ego = covers(&poses[i]);
+            poses
+                .iter()
+                .skip(i + 1)
+                .any(|other| ego.overlaps(&covers(other)))
+        };
+        (0..egos).any(touches)
+    }
+}
+
+/// The judge must have been made for as many vehicles as there are, or more.
+impl Referee for Judge {
+    fn collision(&mut self, poses: &[Pose], egos: usize) -> bool {
+        let mut places = [None; OTHERS + 1];
+        for (place, &pose) in places.iter_mut().zip(poses) {
+            *place = Some(pose);
         }
+        self.touching(&places).any(|(i, _)| i < egos)
     }
 }
 
@@ -98,13 +112,13 @@ pub fn unshielded(setup: Setup, scenarios: u64, seed: u64) -> Tally {
         .reduce(Tally::default, Tally::plus)
 }
 
-/// One scenario, judged by `judge`.
-pub fn run<R: Rules>(setup: Setup, seed: u64, shielded: bool, judge: &mut impl Overlap) -> Tally {
+/// One scenario, judged by `referee`.
+pub fn run<R: Rules>(setup: Setup, seed: u64, shielded: bool, referee: &mut impl Referee) -> Tally {
     let mut rng = Pcg64::seed_from_u64(seed);
     let Some(scenario) = Scenario::random(setup, &mut rng) else {
         return Tally::default();
     };
-    World::<R>::new(scenario, rng).run(shielded, judge)
+    World::<R>::new(scenario, rng).run(shielded, referee)
 }
 
 /// What drives one vehicle.
@@ -175,7 +189,7 @@ impl<R: Rules> World<R> {
         }
     }
 
-    fn run(mut self, shielded: bool, judge: &mut impl Overlap) -> Tally {
+    fn run(mut self, shielded: bool, referee: &mut impl Referee) -> Tally {
         let mut tally = Tally::default();
         for step in 0..self.scenario.setup.steps {
             for i in 0..self.minds.len() {
@@ -193,7 +207,7 @@ impl<R: Rules> World<R> {
                 }
             }
             self.advance();
-            if self.collision(judge) {
+            if self.collision(referee) {
                 tally.overlaps = 1;
                 break;
             }
@@ -263,7 +277,7 @@ impl<R: Rules> World<R> {
         observation
     }
 
-    /// One step, in two halves if a command takes effect in between.
+    /// One step of everybody.
     fn advance(&mut self) {
         let late = f64::from(self.scenario.setup.contract.latency / STEP);
         for i in 0..self.states.len() {
@@ -280,7 +294,7 @@ impl<R: Rules> World<R> {
         }
     }
 
-    fn collision(&self, judge: &mut impl Overlap) -> bool {
+    fn collision(&self, referee: &mut impl Referee) -> bool {
         let poses: Vec<Pose> = self
             .scenario
             .vehicles
@@ -293,7 +307,7 @@ impl<R: Rules> World<R> {
         } else {
             1
         };
-        (0..egos).any(|i| (i + 1..poses.len()).any(|j| judge.touching(&poses, i, j)))
+        referee.collision(&poses, egos)
     }
 
     /// Whether every shielded vehicle has passed the zones in which routes cross.

@@ -20,6 +20,8 @@ pub struct Setup {
     pub everyone: bool,
     /// Probability at each step that a shielded vehicle's sensors go blind for up to 4 s.
     pub blackouts: f64,
+    /// Everybody leaves by one and the same arm, so that all routes merge.
+    pub one_exit: bool,
     /// Vehicles begin at rest near their zones.
     pub at_rest: bool,
     /// Length in steps.
@@ -67,7 +69,7 @@ impl Scenario {
         let mut placed: Vec<(Route<32>, State)> = Vec::new();
         for _ in 0..setup.vehicles {
             let mut candidates = (0..ATTEMPTS)
-                .filter_map(|_| Some((layout.route(rng)?, start(setup, rng))))
+                .filter_map(|_| Some((layout.route(setup, rng)?, start(setup, rng))))
                 .filter(|candidate| fits(setup, candidate, &placed));
             if let Some(found) = candidates.next() {
                 placed.push(found);
@@ -175,9 +177,13 @@ impl Layout {
         }
     }
 
-    fn route(&self, rng: &mut Pcg64) -> Option<Route<32>> {
-        let from = rng.random_range(0..self.arms.len());
-        let to = (from + rng.random_range(1..self.arms.len())) % self.arms.len();
+    fn route(&self, setup: Setup, rng: &mut Pcg64) -> Option<Route<32>> {
+        let to = if setup.one_exit {
+            0
+        } else {
+            rng.random_range(0..self.arms.len())
+        };
+        let from = (to + rng.random_range(1..self.arms.len())) % self.arms.len();
         let (entry, exit) = (self.gate(from, -1.0), self.gate(to, 1.0));
         let far = |gate: Gate, distance: f32| gate.at + gate.outward * distance;
         // A cubic curve with its inner control points 0.55 of the radius inwards, in 12 pieces.

@@ -1,0 +1,243 @@
+//! The shield in closed loop: it keeps vehicles apart, it lets them pass, and each of its rules is needed.
+
+use cede_controller::shield::hazard::Hazard;
+use cede_controller::shield::margin::{self, Departure};
+use cede_controller::shield::reach::Reach;
+use cede_controller::shield::{Rules, Sound};
+use cede_controller::{Contract, Footprint, Plan, Zone};
+use cede_sim::campaign::{Setup, Tally, campaign, run, unshielded};
+use cede_sim::judge::Judge;
+
+/// One careless shielded vehicle among adversaries, with exact sensors.
+const ADVERSARIES: Setup = Setup {
+    contract: Contract::WORST_CASE,
+    vehicles: 4,
+    everyone: false,
+    blackouts: 0.0,
+    one_exit: false,
+    at_rest: false,
+    steps: 150,
+};
+
+fn noisy(setup: Setup, blackouts: f64) -> Setup {
+    let mut noisy = Setup { blackouts, ..setup };
+    noisy.contract.position_error = 0.3;
+    noisy.contract.speed_error = 0.3;
+    noisy
+}
+
+/// Every vehicle is shielded; they drive a little slower than the others that they fear.
+fn everyone(contract: Contract, vehicles: usize) -> Setup {
+    let mut setup = Setup {
+        contract,
+        vehicles,
+        everyone: true,
+        ..ADVERSARIES
+    };
+    setup.contract.ego.max_speed = 14.0;
+    setup
+}
+
+fn at_rest(contract: Contract, vehicles: usize) -> Setup {
+    Setup {
+        at_rest: true,
+        steps: 600,
+        ..everyone(contract, vehicles)
+    }
+}
+
+fn all_setups() -> Vec<(&'static str, Setup)> {
+    let among = |vehicles| Setup {
+        vehicles,
+        ..ADVERSARIES
+    };
+    let stop = Contract::ALL_WAY_STOP;
+    vec![
+        ("one adversary", among(2)),
+        ("three adversaries", among(4)),
+        ("eight adversaries", among(9)),
+        ("sensing errors", noisy(among(3), 0.0)),
+        ("blackouts", noisy(among(3), 0.02)),
+        (
+            "mostly blind",
+            Setup {
+                blackouts: 0.3,
+                ..among(5)
+            },
+        ),
+        (
+            "merging",
+            Setup {
+                one_exit: true,
+                ..among(3)
+            },
+        ),
+        ("shielded all", everyone(Contract::WORST_CASE, 4)),
+        ("shielded all, precedence", everyone(stop, 5)),
+        ("from rest, precedence", at_rest(stop, 3)),
+    ]
+}
+
+fn assert_safe(name: &str, tally: &Tally) {
+    assert!(tally.scenarios > 0, "{name}: {tally:?}");
+    assert_eq!(tally.overlaps, 0, "{name}: {tally:?}");
+    assert_eq!(tally.unverified, 0, "{name}: {tally:?}");
+    assert_eq!(tally.false_breaches, 0, "{name}: {tally:?}");
+}
+
+#[test]
+fn nobody_is_ever_in_a_zone_with_a_shielded_vehicle() {
+    for (name, setup) in all_setups() {
+        assert_safe(name, &campaign::<Sound>(setup, 60, 1));
+    }
+}
+
+/// 10⁷ steps, in some minutes: `cargo test --release -p cede-sim --test shield -- --ignored`.
+#[test]
+#[ignore = "takes minutes"]
+fn ten_million_adversarial_steps_without_an_overlap() {
+    let setups = all_setups();
+    let (mut seed, mut steps) = (1_000_000, 0);
+    while steps < 10_000_000 {
+        for &(name, setup) in &setups {
+            let tally = campaign::<Sound>(setup, 1000, seed);
+            assert_safe(name, &tally);
+            steps += tally.steps;
+            seed += 1000;
+        }
+        println!("{steps} steps");
+    }
+}
+
+#[test]
+fn rapier_agrees_that_nobody_touches() {
+    let setup = Setup {
+        vehicles: 9,
+        ..ADVERSARIES
+    };
+    for (shielded, expected) in [(true, 0), (false, 1)] {
+        let mut judge = Judge::new(&[Footprint::PAPER; 9]);
+        let overlaps: u64 = (0..40)
+            .map(|seed| run::<Sound>(setup, seed, shielded, &mut judge).overlaps)
+            .sum();
+        assert_eq!(overlaps.min(1), expected, "shielded: {shielded}");
+    }
+}
+
+#[test]
+fn without_the_shield_there_are_collisions() {
+    let tally = unshielded(ADVERSARIES, 60, 1);
+    assert!(tally.overlaps > 10, "{tally:?}");
+}
+
+#[test]
+fn the_same_seed_gives_the_same_tally_on_any_number_of_threads() {
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    let one = alone
+        .unwrap()
+        .install(|| campaign::<Sound>(ADVERSARIES, 30, 5));
+    assert_eq!(one, campaign::<Sound>(ADVERSARIES, 30, 5));
+}
+
+#[test]
+fn two_vehicles_at_rest_pass_by_precedence_and_may_wait_for_ever_without() {
+    let stop = campaign::<Sound>(at_rest(Contract::ALL_WAY_STOP, 2), 100, 9);
+    assert_eq!(stop.cleared, stop.scenarios, "{stop:?}");
+    let worst = campaign::<Sound>(at_rest(Contract::WORST_CASE, 2), 100, 9);
+    assert!(worst.cleared < worst.scenarios, "{worst:?}");
+}
+
+/// Whether the suite notices that `R` is broken, on set-ups that are safe with the sound rules.
+fn caught<R: Rules>() -> bool {
+    all_setups()
+        .into_iter()
+        .map(|(_, setup)| campaign::<R>(setup, 400, 1))
+        .any(|tally| tally.overlaps > 0 || tally.unverified > 0)
+}
+
+macro_rules! mutant {
+    ($test:ident, $name:ident, $($rule:tt)*) => {
+        struct $name;
+        impl Rules for $name {
+            $($rule)*
+        }
+        #[test]
+        fn $test() {
+            assert!(caught::<$name>());
+        }
+    };
+}
+
+mutant! { a_margin_of_the_wrong_sign_is_caught, MarginSign,
+    fn stops_short(contract: &Contract, limit: f32, rest: f32) -> f32 {
+        -margin::stops_short(contract, limit, rest)
+    }
+}
+mutant! { a_zone_that_ends_where_it_begins_is_caught, ZoneEnd,
+    fn cleared_at(zone: &Zone) -> f32 {
+        zone.ego.from
+    }
+}
+mutant! { an_arrival_time_without_acceleration_is_caught, Coasting,
+    fn rush(_: &Contract, speed: f32, time: f32) -> Reach<f32> {
+        Reach { distance: speed * time, speed }
+    }
+}
+mutant! { a_zone_given_up_when_the_other_enters_it_is_caught, LeftTooEarly,
+    fn left(zone: &Zone, other: f32) -> bool {
+        other >= zone.other.from
+    }
+}
+mutant! { a_stale_plan_is_caught, StalePlan,
+    fn tail(plan: Plan) -> Plan {
+        plan
+    }
+}
+mutant! { a_dropped_latency_is_caught, NoLatency,
+    fn departure(contract: &Contract, speed: f32, previous: [f32; 2], command: f32) -> Departure<f32> {
+        let prompt = Contract { latency: 0.0, ..*contract };
+        margin::departure(&prompt, speed, previous, command)
+    }
+}
+mutant! { a_stop_without_the_first_period_is_caught, StopsNow,
+    fn departure(contract: &Contract, speed: f32, previous: [f32; 2], command: f32) -> Departure<f32> {
+        Departure {
+            braking: Reach::start(speed),
+            ..margin::departure(contract, speed, previous, command)
+        }
+    }
+}
+mutant! { hazards_in_the_wrong_order_are_caught, WrongOrder,
+    fn sooner(a: &Hazard, b: &Hazard) -> bool {
+        a.target > b.target
+    }
+}
+mutant! { entering_a_lane_without_a_gap_is_caught, NoGap,
+    fn safe_gap(_: &Contract, _: f32, _: f32) -> f32 {
+        0.0
+    }
+}
+mutant! { a_leader_that_is_trusted_to_brake_gently_is_caught, GentleLeader,
+    fn earliest_rest(contract: &Contract, speed: f32) -> f32 {
+        2.0 * margin::earliest_rest(contract, speed)
+    }
+}
+mutant! { a_plan_that_forgets_to_stop_after_the_zone_is_caught, RestsWhereItClears,
+    fn rest(_: &Contract, from: Reach<f32>, _: f32) -> f32 {
+        from.distance
+    }
+}
+
+struct LeftForgotten;
+impl Rules for LeftForgotten {
+    fn left(_: &Zone, _: f32) -> bool {
+        false
+    }
+}
+
+#[test]
+fn a_zone_whose_clearing_is_forgotten_is_caught_by_who_gets_through() {
+    let setup = at_rest(Contract::ALL_WAY_STOP, 2);
+    let forgetful = campaign::<LeftForgotten>(setup, 100, 9);
+    assert!(forgetful.cleared < forgetful.scenarios, "{forgetful:?}");
+}
