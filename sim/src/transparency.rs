@@ -75,6 +75,47 @@ pub fn transparency(
     Ok(groups.map(total).filter(|t| t.steps > 0).collect())
 }
 
+/// The share that is accepted under one contract of a sweep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Swept {
+    /// Hardest acceleration of the other, in m/s².
+    pub acceleration: f32,
+    /// Braking of the ego, in m/s².
+    pub braking: f32,
+    /// Of which encounters.
+    pub kind: ConflictKind,
+    /// Steps at which both vehicles are there, of both roles.
+    pub steps: u64,
+    /// Those whose recorded acceleration the shield accepts.
+    pub accepted: u64,
+}
+
+/// [`transparency`] under contracts that differ from `contract` in the other's acceleration
+/// (0.5 … 4 m/s²) and the ego's braking (3 … 8 m/s²).
+///
+/// # Errors
+/// If a number of `contract` is out of its range.
+pub fn sweep(encounters: &[&Encounter], contract: Contract) -> Result<Vec<Swept>, ContractError> {
+    let mut rows = Vec::new();
+    for (half, braking) in (1..=8_u8).flat_map(|half| (3..=8_u8).map(move |b| (half, b))) {
+        let mut contract = contract;
+        contract.other.acceleration = 0.5 * f32::from(half);
+        contract.ego.braking = f32::from(braking);
+        let counted = transparency(encounters, contract)?;
+        for kind in [ConflictKind::Crossing, ConflictKind::Merging] {
+            let of = || counted.iter().filter(|row| row.kind == kind);
+            rows.push(Swept {
+                acceleration: contract.other.acceleration,
+                braking: contract.ego.braking,
+                kind,
+                steps: of().map(|row| row.steps).sum(),
+                accepted: of().map(|row| row.accepted).sum(),
+            });
+        }
+    }
+    Ok(rows)
+}
+
 fn count(shield: &Shield<1>, encounter: &Encounter, role: Role) -> Transparency {
     let mut result = Transparency {
         role,
@@ -89,21 +130,10 @@ fn count(shield: &Shield<1>, encounter: &Encounter, role: Role) -> Transparency 
     ) else {
         return result;
     };
-    let path = |p: &'_ Participant| p.route.clone();
-    let (ego_route, other_route) = (path(ego), path(other));
-    let footprint = Footprint::PAPER;
-    let scene = Scene::<1>::new(
-        Path {
-            route: &ego_route,
-            footprint,
-        },
-        &[Path {
-            route: &other_route,
-            footprint,
-        }],
-    );
-    // One other with the paper's footprint: a scene there is.
-    let Ok(scene) = scene else { return result };
+    // One other with the paper's footprint: there is a scene.
+    let Ok(scene) = Scene::<1>::new(path(ego), &[path(other)]) else {
+        return result;
+    };
     let vehicle = |participant: &Participant, sample: &Sample| Vehicle {
         s: sample.s,
         speed: sample.v,
@@ -123,4 +153,11 @@ fn count(shield: &Shield<1>, encounter: &Encounter, role: Role) -> Transparency 
         previous = Some(a.a);
     }
     result
+}
+
+fn path(participant: &Participant) -> Path<'_, 128> {
+    Path {
+        route: &participant.route,
+        footprint: Footprint::PAPER,
+    }
 }

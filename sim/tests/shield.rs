@@ -8,74 +8,15 @@ use cede_controller::{Contract, Footprint, Plan, Zone};
 use cede_sim::campaign::{Setup, Tally, campaign, run, unshielded};
 use cede_sim::judge::Judge;
 
-/// One careless shielded vehicle among adversaries, with exact sensors.
-const ADVERSARIES: Setup = Setup {
-    contract: Contract::WORST_CASE,
-    vehicles: 4,
-    everyone: false,
-    blackouts: 0.0,
-    one_exit: false,
-    at_rest: false,
-    steps: 150,
-};
+/// One careless shielded vehicle among three adversaries, with exact sensors.
+const ADVERSARIES: Setup = Setup::ADVERSARIES;
 
-fn noisy(setup: Setup, blackouts: f64) -> Setup {
-    let mut noisy = Setup { blackouts, ..setup };
-    noisy.contract.position_error = 0.3;
-    noisy.contract.speed_error = 0.3;
-    noisy
-}
-
-/// Every vehicle is shielded; they drive a little slower than the others that they fear.
-fn everyone(contract: Contract, vehicles: usize) -> Setup {
-    let mut setup = Setup {
-        contract,
-        vehicles,
-        everyone: true,
-        ..ADVERSARIES
-    };
-    setup.contract.ego.max_speed = 14.0;
-    setup
-}
-
-fn at_rest(contract: Contract, vehicles: usize) -> Setup {
+fn at_rest(contract: Contract) -> Setup {
     Setup {
         at_rest: true,
         steps: 600,
-        ..everyone(contract, vehicles)
+        ..Setup::everyone(contract, 2)
     }
-}
-
-fn all_setups() -> Vec<(&'static str, Setup)> {
-    let among = |vehicles| Setup {
-        vehicles,
-        ..ADVERSARIES
-    };
-    let stop = Contract::ALL_WAY_STOP;
-    vec![
-        ("one adversary", among(2)),
-        ("three adversaries", among(4)),
-        ("eight adversaries", among(9)),
-        ("sensing errors", noisy(among(3), 0.0)),
-        ("blackouts", noisy(among(3), 0.02)),
-        (
-            "mostly blind",
-            Setup {
-                blackouts: 0.3,
-                ..among(5)
-            },
-        ),
-        (
-            "merging",
-            Setup {
-                one_exit: true,
-                ..among(3)
-            },
-        ),
-        ("shielded all", everyone(Contract::WORST_CASE, 4)),
-        ("shielded all, precedence", everyone(stop, 5)),
-        ("from rest, precedence", at_rest(stop, 3)),
-    ]
 }
 
 fn assert_safe(name: &str, tally: &Tally) {
@@ -87,7 +28,7 @@ fn assert_safe(name: &str, tally: &Tally) {
 
 #[test]
 fn nobody_is_ever_in_a_zone_with_a_shielded_vehicle() {
-    for (name, setup) in all_setups() {
+    for (name, setup) in Setup::all() {
         assert_safe(name, &campaign::<Sound>(setup, 60, 1));
     }
 }
@@ -96,10 +37,10 @@ fn nobody_is_ever_in_a_zone_with_a_shielded_vehicle() {
 #[test]
 #[ignore = "takes minutes"]
 fn ten_million_adversarial_steps_without_an_overlap() {
-    let setups = all_setups();
+    let setups = Setup::all();
     let (mut seed, mut steps) = (1_000_000, 0);
     while steps < 10_000_000 {
-        for &(name, setup) in &setups {
+        for (name, setup) in setups {
             let tally = campaign::<Sound>(setup, 1000, seed);
             assert_safe(name, &tally);
             steps += tally.steps;
@@ -141,15 +82,15 @@ fn the_same_seed_gives_the_same_tally_on_any_number_of_threads() {
 
 #[test]
 fn two_vehicles_at_rest_pass_by_precedence_and_may_wait_for_ever_without() {
-    let stop = campaign::<Sound>(at_rest(Contract::ALL_WAY_STOP, 2), 100, 9);
+    let stop = campaign::<Sound>(at_rest(Contract::ALL_WAY_STOP), 100, 9);
     assert_eq!(stop.cleared, stop.scenarios, "{stop:?}");
-    let worst = campaign::<Sound>(at_rest(Contract::WORST_CASE, 2), 100, 9);
+    let worst = campaign::<Sound>(at_rest(Contract::WORST_CASE), 100, 9);
     assert!(worst.cleared < worst.scenarios, "{worst:?}");
 }
 
 /// Whether the suite notices that `R` is broken, on set-ups that are safe with the sound rules.
 fn caught<R: Rules>() -> bool {
-    all_setups()
+    Setup::all()
         .into_iter()
         .map(|(_, setup)| campaign::<R>(setup, 400, 1))
         .any(|tally| tally.overlaps > 0 || tally.unverified > 0)
@@ -237,7 +178,7 @@ impl Rules for LeftForgotten {
 
 #[test]
 fn a_zone_whose_clearing_is_forgotten_is_caught_by_who_gets_through() {
-    let setup = at_rest(Contract::ALL_WAY_STOP, 2);
+    let setup = at_rest(Contract::ALL_WAY_STOP);
     let forgetful = campaign::<LeftForgotten>(setup, 100, 9);
     assert!(forgetful.cleared < forgetful.scenarios, "{forgetful:?}");
 }

@@ -1,8 +1,10 @@
 //! `cede verify`: proofs, and the check of proofs.
 
+mod campaign;
 mod check;
 mod network;
 mod policy;
+mod shield;
 
 use crate::failure::Failure;
 use clap::Subcommand;
@@ -16,6 +18,10 @@ pub(crate) enum Verify {
     Policy(policy::Policy),
     /// Checks a certificate with code that shares nothing with the prover's.
     Check(check::Check),
+    /// What would the shield have allowed recorded drivers?
+    Shield(shield::Shield),
+    /// Does a shielded vehicle survive among others that do their worst?
+    Campaign(campaign::Campaign),
 }
 
 impl Verify {
@@ -25,6 +31,8 @@ impl Verify {
             Self::Network(network) => network.run(),
             Self::Policy(policy) => policy.run(),
             Self::Check(check) => check.run(),
+            Self::Shield(shield) => shield.run(),
+            Self::Campaign(campaign) => campaign.run(),
         }
     }
 }

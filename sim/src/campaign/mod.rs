@@ -44,7 +44,9 @@ pub struct Tally {
 }
 
 impl Tally {
-    fn plus(self, other: Self) -> Self {
+    /// Both together.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
         Self {
             scenarios: self.scenarios + other.scenarios,
             steps: self.steps + other.steps,

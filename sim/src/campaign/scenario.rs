@@ -28,6 +28,68 @@ pub struct Setup {
     pub steps: u32,
 }
 
+impl Setup {
+    /// One careless shielded vehicle among three adversaries; sensors are exact.
+    pub const ADVERSARIES: Self = Self {
+        contract: Contract::WORST_CASE,
+        vehicles: 4,
+        everyone: false,
+        blackouts: 0.0,
+        one_exit: false,
+        at_rest: false,
+        steps: 150,
+    };
+
+    /// Every vehicle is shielded; they drive a little slower than the others that they fear.
+    #[must_use]
+    pub const fn everyone(contract: Contract, vehicles: usize) -> Self {
+        let mut setup = Self::ADVERSARIES;
+        setup.contract = contract;
+        setup.contract.ego.max_speed = 14.0;
+        setup.vehicles = vehicles;
+        setup.everyone = true;
+        setup
+    }
+
+    /// The set-ups of a campaign, each with its name.
+    #[must_use]
+    pub fn all() -> [(&'static str, Self); 11] {
+        let among = |vehicles| Self {
+            vehicles,
+            ..Self::ADVERSARIES
+        };
+        let noisy = |mut setup: Self| {
+            setup.contract.position_error = 0.3;
+            setup.contract.speed_error = 0.3;
+            setup
+        };
+        let (worst, stop) = (Contract::WORST_CASE, Contract::ALL_WAY_STOP);
+        let blind = |blackouts, setup| Self { blackouts, ..setup };
+        let merging = |setup| Self {
+            one_exit: true,
+            ..setup
+        };
+        let at_rest = Self {
+            at_rest: true,
+            steps: 600,
+            ..Self::everyone(stop, 3)
+        };
+        [
+            ("one adversary", among(2)),
+            ("three adversaries", among(4)),
+            ("eight adversaries", among(9)),
+            ("merging", merging(among(3))),
+            ("sensing errors", noisy(among(3))),
+            ("blackouts", noisy(blind(0.02, among(3)))),
+            ("mostly blind", blind(0.3, among(5))),
+            ("all shielded", Self::everyone(worst, 4)),
+            ("all shielded, merging", merging(Self::everyone(worst, 4))),
+            ("all shielded, precedence", Self::everyone(stop, 5)),
+            ("from rest, precedence", at_rest),
+        ]
+    }
+}
+
 /// A vehicle of a scenario.
 #[derive(Clone, Debug)]
 pub(super) struct Entrant {

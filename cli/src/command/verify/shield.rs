@@ -1,0 +1,101 @@
+//! `cede verify shield`: what the shield would have allowed recorded drivers.
+
+use crate::failure::Failure;
+use cede_controller::{ConflictKind, Contract};
+use cede_sim::transparency::{Swept, Transparency, sweep, transparency};
+use cede_sim::{Dataset, Encounter};
+use clap::Args;
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+/// The share of recorded steps that the shield accepts; exit code 1 if it is below 99.5 % at
+/// crossings or 99 % at merges under the worst-case contract.
+#[derive(Args)]
+pub(crate) struct Shield {
+    /// Folder of the recordings.
+    #[arg(long)]
+    data: PathBuf,
+    /// Site of the recordings.
+    #[arg(long, default_value = "EP0")]
+    site: String,
+    /// Writes the shares for other accelerations and ego brakings to this CSV file.
+    #[arg(long)]
+    sweep: Option<PathBuf>,
+}
+
+impl Shield {
+    /// Runs the command.
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let data = Dataset::load(&self.data, &self.site)?;
+        let encounters: Vec<&Encounter> = data.encounters.iter().collect();
+        println!("contract          kind       role    steps  accepted");
+        let mut worst = Vec::new();
+        for (name, contract) in contracts() {
+            // The named contracts are in range.
+            let rows = transparency(&encounters, contract).unwrap_or_default();
+            for row in &rows {
+                let (kind, role) = (format!("{:?}", row.kind), format!("{:?}", row.role));
+                let share = 100.0 * row.share();
+                println!(
+                    "{name:17} {kind:10} {role:5} {:>7}  {share:6.2} %",
+                    row.steps
+                );
+            }
+            if name == "worst case" {
+                worst = rows;
+            }
+        }
+        if let Some(file) = &self.sweep {
+            let rows = sweep(&encounters, Contract::WORST_CASE).unwrap_or_default();
+            cede_sim::output::write(file, |out| csv(out, &rows))?;
+        }
+        judge(&worst)
+    }
+}
+
+fn csv(out: &mut dyn Write, rows: &[Swept]) -> io::Result<()> {
+    writeln!(out, "other_acceleration,ego_braking,kind,steps,accepted")?;
+    for row in rows {
+        let kind = format!("{:?}", row.kind).to_lowercase();
+        let (a, b) = (row.acceleration, row.braking);
+        writeln!(out, "{a},{b},{kind},{},{}", row.steps, row.accepted)?;
+    }
+    Ok(())
+}
+
+fn contracts() -> [(&'static str, Contract); 4] {
+    let worst = Contract::WORST_CASE;
+    let with = |change: fn(&mut Contract)| {
+        let mut contract = worst;
+        change(&mut contract);
+        contract
+    };
+    [
+        ("worst case", worst),
+        ("no latency", with(|c| c.latency = 0.0)),
+        (
+            "errors 0.3",
+            with(|c| (c.position_error, c.speed_error) = (0.3, 0.3)),
+        ),
+        ("reaction 1 s", with(|c| c.follower.reaction = 1.0)),
+    ]
+}
+
+fn judge(rows: &[Transparency]) -> Result<(), Failure> {
+    for (kind, bar) in [
+        (ConflictKind::Crossing, 0.995),
+        (ConflictKind::Merging, 0.99),
+    ] {
+        let of = || rows.iter().filter(|row| row.kind == kind);
+        let (accepted, steps) = (
+            of().map(|row| row.accepted).sum::<u64>() as f64,
+            of().map(|row| row.steps).sum::<u64>() as f64,
+        );
+        if accepted < bar * steps {
+            return Err(Failure::Check(format!(
+                "{kind:?}: {accepted} of {steps} steps are accepted, fewer than {bar}"
+            )));
+        }
+    }
+    Ok(())
+}
