@@ -18,23 +18,23 @@ const FREE: f32 = 1.0;
 ///
 /// ```
 /// use cede_controller::*;
-/// # fn weights() -> Policy<'static> { unimplemented!() }
-/// # fn sense() -> Observation<8> { unimplemented!() }
-/// # fn actuate(_: f32) {}
-/// # fn main() -> Result<(), Box<dyn core::error::Error>> {
-/// # if false {
-/// // Once, for the intersection ahead:
-/// let mine = Route::<64>::new([Point::new(-60.0, 0.0), Point::new(60.0, 0.0)])?;
-/// let theirs = Route::<64>::new([Point::new(0.0, -60.0), Point::new(0.0, 60.0)])?;
-/// let path = |route| Path { route, footprint: Footprint::PAPER };
-/// let scene = Scene::<8>::new(path(&mine), &[path(&theirs)])?;
-/// let mut controller = Controller::<8>::new(weights(), Contract::WORST_CASE, Part::Other)?;
-/// // Every 100 ms:
-/// let decision = controller.decide(&scene, &sense());
-/// actuate(decision.acceleration);
-/// # }
-/// # Ok(())
-/// # }
+///
+/// /// Once for every intersection: where the ego goes, and where another vehicle may come from.
+/// fn scene(mine: &Route<64>, theirs: &Route<64>) -> Result<Scene<8>, SceneError> {
+///     let path = |route| Path { route, footprint: Footprint::PAPER };
+///     Scene::new(path(mine), &[path(theirs)])
+/// }
+///
+/// /// At start-up, from weights in flash.
+/// fn controller(weights: &'static [u32]) -> Option<Controller<'static, 8>> {
+///     let policy = Policy::new(weights).ok()?;
+///     Controller::new(policy, Contract::WORST_CASE, Part::Left).ok()
+/// }
+///
+/// /// Every 100 ms: the acceleration to command, in m/s².
+/// fn step(controller: &mut Controller<'_, 8>, scene: &Scene<8>, sensed: &Observation<8>) -> f32 {
+///     controller.decide(scene, sensed).acceleration
+/// }
 /// ```
 #[derive(Clone, Debug)]
 pub struct Controller<'w, const N: usize> {
@@ -193,4 +193,111 @@ fn surroundings<const N: usize>(
         Some(Around { meeting, s, speed })
     });
     Surroundings::new(seen.ego.s, there)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::decision::Cause;
+    use crate::features::FeatureSet;
+    use crate::observation::Fault;
+    use crate::route::Route;
+    use crate::scene::Path;
+    use crate::weights::Perspective;
+    use crate::weights::testing::file;
+
+    fn route(points: &[(f32, f32)]) -> Route<4> {
+        Route::new(points.iter().map(|&(x, y)| Point::new(x, y))).unwrap()
+    }
+
+    /// The ego goes east; the others cross from the south, follow it, and come from the south further on.
+    fn scene() -> Scene<3> {
+        let routes = [
+            route(&[(-60.0, 0.0), (120.0, 0.0)]),
+            route(&[(0.0, -60.0), (0.0, 60.0)]),
+            route(&[(-60.0, 0.0), (120.0, 0.0)]),
+            route(&[(30.0, -60.0), (30.0, 60.0)]),
+        ];
+        let path = |route| Path {
+            route,
+            footprint: Footprint::PAPER,
+        };
+        let [ego, a, b, c] = routes.each_ref().map(path);
+        Scene::new(ego, &[a, b, c]).unwrap()
+    }
+
+    fn vehicle(s: f32, speed: f32) -> Vehicle {
+        let pose = route(&[(-60.0, 0.0), (120.0, 0.0)]).pose(s);
+        Vehicle { s, speed, pose }
+    }
+
+    #[test]
+    fn the_most_restrictive_proposal_is_the_one_that_counts() {
+        let file = file(FeatureSet::Route, Perspective::Ego, 16);
+        let policy = Policy::new(&file).unwrap();
+        let decide = |others| {
+            let mut controller = Controller::new(policy, Contract::WORST_CASE, Part::Left).unwrap();
+            controller.propose(
+                &scene(),
+                &Observation {
+                    ego: vehicle(0.0, 5.0),
+                    others,
+                },
+            )
+        };
+        let (a, c) = (vehicle(5.0, 4.0), vehicle(20.0, 9.0));
+        let first = decide([Some(a), None, None]);
+        let third = decide([None, None, Some(c)]);
+        let both = decide([Some(a), None, Some(c)]);
+        let least = if first.0 < third.0 { first } else { third };
+        assert_eq!(both, least);
+        assert_eq!(first.1.unwrap().other, 0);
+        assert_eq!(third.1.unwrap().other, 2);
+    }
+
+    #[test]
+    fn one_ahead_in_the_lane_is_a_leader_and_nobody_to_meet() {
+        let seen = Observation {
+            ego: vehicle(0.0, 5.0),
+            others: [None, Some(vehicle(20.0, 4.0)), None],
+        };
+        let (who, ahead) = leader(&scene(), &seen).unwrap();
+        assert_eq!((who, ahead.speed), (1, 4.0));
+        assert!((ahead.gap - 15.0).abs() < 0.1, "{ahead:?}");
+        assert!(!super::ahead(
+            &scene().meetings()[1],
+            &seen.ego,
+            &vehicle(20.0, 4.0)
+        ));
+    }
+
+    #[test]
+    fn with_nobody_to_meet_the_ego_drives_on_and_with_bad_senses_it_brakes() {
+        let file = file(FeatureSet::Route, Perspective::Ego, 16);
+        let policy = Policy::new(&file).unwrap();
+        let mut controller = Controller::new(policy, Contract::WORST_CASE, Part::Left).unwrap();
+        let alone = Observation {
+            ego: vehicle(0.0, 5.0),
+            others: [None; 3],
+        };
+        let decision = controller.decide(&scene(), &alone);
+        assert_eq!(
+            (decision.acceleration, decision.cause),
+            (FREE, Cause::Policy)
+        );
+        assert_eq!(decision.outlook, None);
+        let blind = Observation {
+            ego: vehicle(f32::NAN, 5.0),
+            ..alone
+        };
+        let decision = controller.decide(&scene(), &blind);
+        assert_eq!(decision.cause, Cause::Fallback(Fault::Ego));
+        assert_eq!(decision.acceleration, -3.0);
+    }
+
+    #[test]
+    fn a_controller_with_its_scene_fits_its_share_of_the_memory() {
+        let size = size_of::<Controller<'_, 8>>() + size_of::<Scene<8>>();
+        assert!(size <= 3072, "{size}");
+    }
 }
