@@ -261,9 +261,9 @@ mod tests {
             ego: vehicle(0.0, 5.0),
             others: [None, Some(vehicle(20.0, 4.0)), None],
         };
-        let (who, ahead) = leader(&scene(), &seen).unwrap();
-        assert_eq!((who, ahead.speed), (1, 4.0));
-        assert!((ahead.gap - 15.0).abs() < 0.1, "{ahead:?}");
+        let leader = surroundings(&scene(), &seen, 0).leader.unwrap();
+        assert_eq!(leader.speed, 4.0);
+        assert!((leader.gap - 15.0).abs() < 0.1, "{leader:?}");
         assert!(!super::ahead(
             &scene().meetings()[1],
             &seen.ego,
