@@ -268,7 +268,7 @@ fn site_descriptions() {
       |
     3 | lanes = 4
       | ^^^^^
-    unknown field `lanes`, expected one of `name`, `folder`, `split`, `arm`, `movement`, `conflict`
+    unknown field `lanes`, expected one of `name`, `folder`, `split`, `every_pair`, `arm`, `movement`, `conflict`
     compare with sim/src/data/sites/EP0.toml
     ");
     let unknown_arm = "name = \"X\"\nfolder = \"X\"\n[[conflict]]\nkind = \"crossing\"\n\
