@@ -4,6 +4,7 @@ mod data;
 mod demo;
 mod evaluate;
 mod replay;
+mod reproduce;
 mod train;
 mod verify;
 
@@ -25,6 +26,8 @@ pub(crate) enum Command {
     Replay(replay::Args),
     /// Train a policy
     Train(train::Args),
+    /// Train and judge the rows of the paper's table
+    Reproduce(reproduce::Args),
     /// Prove properties of networks, and check proofs
     #[command(subcommand)]
     Verify(verify::Verify),
@@ -39,6 +42,7 @@ impl Command {
             Self::Evaluate(args) => evaluate::run(&args),
             Self::Replay(args) => replay::run(&args),
             Self::Train(args) => train::run(&args),
+            Self::Reproduce(args) => reproduce::run(&args),
             Self::Verify(verify) => verify.run(),
         }
     }

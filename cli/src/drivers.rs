@@ -45,27 +45,27 @@ impl Drivers {
         }
     }
 
-    /// The drivers themselves; `weights` is the file of Cede's policy.
+    /// The drivers themselves; `weights` is the file of Cede's policy, by default the embedded one.
     ///
     /// # Errors
-    /// The file cannot be used, or Cede was named without one.
+    /// The file cannot be used.
     pub(crate) fn contenders(&self, weights: Option<&Path>) -> Result<Vec<Contender>, Failure> {
         let mut contenders = Vec::new();
         for &name in &self.names {
             match (name, weights) {
                 (Name::Baseline(baseline), _) => contenders.push(Contender::Baseline(baseline)),
                 (Name::Cede, Some(file)) => contenders.push(Contender::Cede(load(file)?)),
-                (Name::Cede, None) if self.lenient => {}
-                (Name::Cede, None) => {
-                    return Err(Failure::input(
-                        "driver `cede` needs a policy",
-                        "name its weights with --weights FILE",
-                    ));
-                }
+                (Name::Cede, None) => contenders.push(Contender::Cede(embedded()?)),
             }
         }
         Ok(contenders)
     }
+}
+
+/// The policy that comes with the program.
+fn embedded() -> Result<Policy<'static>, Failure> {
+    let words = cede_controller::embedded::words();
+    Policy::new(words).map_err(|error| Failure::input(error, "report this as a bug"))
 }
 
 fn load(file: &Path) -> Result<Policy<'static>, Failure> {

@@ -13,6 +13,7 @@ extern crate std;
 pub mod conflict;
 pub mod controller;
 pub mod decision;
+pub mod embedded;
 pub mod features;
 pub mod geometry;
 pub mod mlp;

@@ -3,6 +3,7 @@
 use crate::apg::{self, Apg};
 use crate::bc::{self, Bc};
 use crate::episodes::{Course, Reward};
+use crate::learner::Rates;
 use crate::pilot::Pilot;
 use crate::sac::{self, Sac};
 use cede_sim::Sight;
@@ -54,6 +55,34 @@ impl Algorithm {
             Self::SacerV => sac(Reward::SacerV),
             Self::SacerSvo => sac(Reward::SacerSvo),
             Self::Apg => Settings::Apg(apg::Settings::default()),
+        }
+    }
+}
+
+impl Algorithm {
+    /// The settings by which `cede reproduce` trains it: the defaults, but fewer and faster updates
+    /// where the paper's would take hours. See `docs/method.md`.
+    #[must_use]
+    pub fn reproduction(self) -> Settings {
+        match self.settings() {
+            Settings::Bc(settings) => Settings::Bc(bc::Settings {
+                updates: 4_000,
+                width: 64,
+                rate: 1e-3,
+                ..settings
+            }),
+            Settings::Sac(settings) => Settings::Sac(sac::Settings {
+                episodes: 6_000,
+                steps_per_update: 16,
+                width: 64,
+                rates: Rates {
+                    policy: 3e-4,
+                    temperature: 1e-3,
+                    ..settings.rates
+                },
+                ..settings
+            }),
+            apg @ Settings::Apg(_) => apg,
         }
     }
 }
