@@ -86,7 +86,7 @@ impl Hazards {
                     self.insert::<R>(Hazard {
                         other: number,
                         passage: if claimed {
-                            granted(contract, hazard.passage, zone, other)
+                            granted(contract, hazard.passage, zone, (&seen.ego, other))
                         } else {
                             hazard.passage
                         },
@@ -192,16 +192,28 @@ fn behind<R: Rules>(contract: &Contract, gap: f32, other: &Vehicle) -> f32 {
 }
 
 /// The passage of a zone in which the ego has precedence: free, if the other can still stop before it.
-fn granted(contract: &Contract, passage: Passage, zone: &Zone, other: &Vehicle) -> Passage {
-    let (Some(rule), Passage::Before { .. } | Passage::Ahead { .. }) =
-        (contract.precedence, passage)
-    else {
+///
+/// Into a lane only if the ego is too near for the other to enter ahead of it: one that has
+/// planned to do so, with a safe gap, need not stop, and the ego must then be able to.
+fn granted(
+    contract: &Contract,
+    passage: Passage,
+    zone: &Zone,
+    (ego, other): (&Vehicle, &Vehicle),
+) -> Passage {
+    let Some(rule) = contract.precedence else {
         return passage;
     };
+    let error = contract.position_error;
+    let settled = match passage {
+        Passage::Before { .. } => true,
+        Passage::Ahead { .. } => ego.s - error - zone.other.from > zone.lead.from,
+        Passage::Granted { .. } | Passage::Never => false,
+    };
     let speed = other.speed + contract.speed_error;
-    let stops = other.s + contract.position_error + speed * speed / (2.0 * rule.braking);
+    let stops = other.s + error + speed * speed / (2.0 * rule.braking);
     let margin = zone.other.from - stops;
-    if margin >= 0.0 {
+    if settled && margin >= 0.0 {
         Passage::Granted { margin }
     } else {
         passage

@@ -15,7 +15,7 @@ impl Claims {
         self.0.checked_shr(other.into()).unwrap_or(0) & 1 == 1
     }
 
-    fn claim(&mut self, other: u8) {
+    pub(super) fn claim(&mut self, other: u8) {
         self.0 |= 1_u32.checked_shl(other.into()).unwrap_or(0);
     }
 }

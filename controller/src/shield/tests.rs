@@ -156,6 +156,27 @@ fn behind_a_leader_the_ego_can_always_stop() {
     assert!(accepts(14.0, 0.0) && !accepts(13.0, 3.0));
 }
 
+/// Precedence was once granted at any distance: the ego then ran into one that had entered the lane ahead
+/// of it, with a safe gap, and braked there.
+#[test]
+fn precedence_into_a_lane_is_granted_only_where_the_other_cannot_enter_ahead() {
+    let contract = Contract::ALL_WAY_STOP;
+    let scene = Scene::<2>::new(path(&east()), &[path(&ramp())]).unwrap();
+    let zone = *scene.meetings()[0].zones().next().unwrap();
+    let mut claims = Claims::default();
+    claims.claim(0);
+    let passage = |ego: f32| {
+        let seen = seen(vehicle(ego, 0.0), vehicle(zone.other.from - 1.0, 0.0));
+        let mut hazards = Hazards::new();
+        hazards.add::<2, Sound>(&contract, &scene, &seen, claims);
+        hazards.iter().next().unwrap().passage
+    };
+    let line = zone.other.from + zone.lead.from;
+    assert!(line < zone.ego.from);
+    assert!(matches!(passage(line - 0.1), Passage::Ahead { .. }));
+    assert!(matches!(passage(line + 0.1), Passage::Granted { .. }));
+}
+
 /// The scene and the contract in units of length that are `factor` times as long.
 fn scaled(mut scene: Scene<2>, mut contract: Contract, factor: f32) -> (Scene<2>, Contract) {
     let far = crate::zone::FAR;
