@@ -1,0 +1,87 @@
+//! A shielded vehicle among replayed humans gets through, and soon after they have.
+
+use cede_controller::{Cause, Contract, Fault, Observation, Shield, Vehicle};
+use cede_sim::driver::scene;
+use cede_sim::{Dataset, Encounter, State, advance};
+use rayon::prelude::*;
+use std::path::PathBuf;
+
+/// Where the ego would like to be in terms of speed, in m/s.
+const CRUISE: f32 = 8.0;
+
+/// Steps from the moment at which the other is out of every zone, or gone, until the ego has passed the
+/// zones in which it met it; `None` if it begins without a safe plan, for then nothing is promised.
+fn delay(encounter: &Encounter, ego: usize) -> Option<u32> {
+    let (me, them) = (
+        &encounter.participants[ego],
+        &encounter.participants[1 - ego],
+    );
+    let scene = scene(encounter, ego)?;
+    let zones: Vec<_> = scene.meetings()[0].zones().copied().collect();
+    let mut shield = Shield::<1>::new(Contract::WORST_CASE).unwrap();
+    let mut state = me.record.first().map(|r| State { s: r.s, v: r.v })?;
+    let mut free = 0;
+    for step in 0..10_000 {
+        let vehicle = |s: f32, speed: f32, route: &cede_sim::SimRoute| Vehicle {
+            s,
+            speed,
+            pose: route.pose(s),
+        };
+        let other = them
+            .record
+            .get(step)
+            .map(|r| vehicle(r.s, r.v, &them.route));
+        let seen = Observation {
+            ego: vehicle(state.s, state.v, &me.route),
+            others: [other],
+        };
+        // Into a lane the ego need only enter: it may have to follow the other for ever.
+        let passed =
+            |z: &cede_controller::Zone| state.s >= if z.is_lane() { z.ego.from } else { z.ego.to };
+        if zones.iter().all(passed) {
+            return Some(free);
+        }
+        let gone = |z: &cede_controller::Zone| other.is_none_or(|o| o.s >= z.other.to);
+        free += u32::from(zones.iter().all(gone));
+        let decision = shield.filter(&scene, &seen, (CRUISE - state.v).clamp(-3.0, 3.0));
+        if step == 0 && decision.cause == Cause::Fallback(Fault::Unverified) {
+            return None;
+        }
+        state = advance(state, decision.acceleration);
+    }
+    panic!("{:?}: vehicle {ego} never gets through", encounter.id);
+}
+
+/// Needs the INTERACTION recordings, whose licence keeps them out of the repository.
+#[test]
+fn nobody_waits_longer_than_it_takes_to_drive_off_once_the_human_has_gone() {
+    let default = || {
+        PathBuf::from(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../shared/interaction"
+        ))
+    };
+    let dir = std::env::var_os("CEDE_INTERACTION_DIR").map_or_else(default, PathBuf::from);
+    if !dir.is_dir() {
+        println!(
+            "skipped: no recordings at {}; set CEDE_INTERACTION_DIR",
+            dir.display()
+        );
+        return;
+    }
+    let data = Dataset::load(&dir, "EP0").unwrap();
+    let delays: Vec<Option<u32>> = data
+        .encounters
+        .par_iter()
+        .flat_map_iter(|encounter| [0, 1].map(|ego| delay(encounter, ego)))
+        .collect();
+    let promised: Vec<u32> = delays.iter().copied().flatten().collect();
+    let longest = promised.iter().max().copied().unwrap_or(0);
+    println!(
+        "{} of {} begin with a safe plan; longest delay {longest} steps",
+        promised.len(),
+        delays.len()
+    );
+    assert_eq!(promised.len(), delays.len());
+    assert!(longest <= 80, "{longest} steps");
+}
