@@ -1,7 +1,7 @@
 //! The controller: from an observation, through policy and shield, to a decision.
 
-use crate::conflict::ConflictKind;
 use crate::decision::{Decision, Outlook};
+use crate::conflict::ConflictKind;
 use crate::geometry::{Footprint, Point};
 use crate::observation::{Fault, Observation, Vehicle};
 use crate::pair::{Pair, Part, Party};
@@ -172,12 +172,16 @@ fn party(vehicle: &Vehicle, exit: Point, conflict: f32, footprint: Footprint) ->
     }
 }
 
-/// Whether the two have yet to meet: in some zone where they cross or merge, neither has done with it.
+/// Whether the two have yet to meet: in some zone neither has done with it. One that is ahead in a
+/// lane that they share from the start has been met once either has entered that lane: it leads.
 fn ahead(meeting: &Meeting, ego: &Vehicle, other: &Vehicle) -> bool {
-    let meets = |kind| matches!(kind, ConflictKind::Crossing | ConflictKind::Merging);
-    meeting
-        .zones()
-        .any(|zone| meets(zone.kind) && ego.s < zone.ego.to && other.s < zone.other.to)
+    meeting.zones().any(|zone| {
+        let (ego_end, other_end) = match zone.kind {
+            ConflictKind::Following => (meeting.ego_conflict, meeting.other_conflict),
+            _ => (zone.ego.to, zone.other.to),
+        };
+        ego.s < ego_end && other.s < other_end
+    })
 }
 
 /// What all the others but number `except` are to the ego.
