@@ -1,7 +1,7 @@
 //! The controller: from an observation, through policy and shield, to a decision.
 
-use crate::decision::{Decision, Outlook};
 use crate::conflict::ConflictKind;
+use crate::decision::{Decision, Outlook};
 use crate::geometry::{Footprint, Point};
 use crate::observation::{Fault, Observation, Vehicle};
 use crate::pair::{Pair, Part, Party};
