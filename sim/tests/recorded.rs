@@ -141,7 +141,8 @@ fn the_map_lies_under_the_tracks() {
         let in_lane = states.iter().filter(|s| on_lane([s.x, s.y])).count();
         let share = in_lane as f64 / states.len() as f64;
         println!(
-            "{site}: {share} of {} positions lie in a lane",
+            "{site}: {:.1} % of {} positions lie in a lane",
+            100.0 * share,
             states.len()
         );
         assert!(share > 0.95, "{site}: {share}");

@@ -341,16 +341,14 @@ impl Interventions {
                     continue;
                 }
                 overruled += 1;
-                if points.len() < MOST_DOTS {
-                    let place = drive
-                        .encounter
-                        .judged(role)
-                        .route
-                        .pose(states[role as usize].s);
-                    points.push([place.position.x, place.position.y].map(|c| centi(f64::from(c))));
-                }
+                let route = &drive.encounter.judged(role).route;
+                let place = route.pose(states[role as usize].s).position;
+                points.push([place.x, place.y].map(|c| centi(f64::from(c))));
             }
         }
+        // Evenly thinned, so that all files are seen.
+        let every = overruled / MOST_DOTS + 1;
+        let points = points.into_iter().step_by(every).collect();
         (overruled > 0).then(|| Self {
             driver: driver.to_owned(),
             block: block(row),
