@@ -87,9 +87,8 @@ fn check<const P: usize>(ego: &Route<P>, other: &Route<P>, step: f32) -> f32 {
     let scene = Scene::<1>::new(path(ego), &[path(other)]).unwrap();
     let zones: Vec<Zone> = scene.meetings()[0].zones().copied().collect();
     let mut worst = 0.0_f32;
-    let sides: [(&Route<P>, &Route<P>, fn(&Zone) -> Interval); 2] =
-        [(ego, other, |z| z.ego), (other, ego, |z| z.other)];
-    for (route, against, side) in sides {
+    for (route, against, mine) in [(ego, other, true), (other, ego, false)] {
+        let side = |z: &Zone| if mine { z.ego } else { z.other };
         let intervals: Vec<Interval> = zones.iter().map(side).collect();
         let occupied = occupied(route, &sweep(against), step);
         for s in &occupied {

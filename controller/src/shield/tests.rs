@@ -95,22 +95,66 @@ fn a_zone_that_the_other_has_left_is_free_for_ever() {
     assert!(margin(&scene, vehicle(56.0, 3.0), vehicle(64.0, 0.0), 3.0) >= 0.0);
 }
 
+/// What an ego does that goes blind when its only safe plan is to clear a zone: the periods planned, and the
+/// commands for as many periods and one more.
+fn blind<R: Rules>() -> (usize, std::vec::Vec<f32>) {
+    let mut shield = Shield::<2, R>::with_rules(WORST).unwrap();
+    let scene = crossing();
+    let fast = seen(vehicle(50.0, 10.0), vehicle(10.0, 5.0));
+    assert_eq!(shield.filter(&scene, &fast, 3.0).cause, Cause::Policy);
+    let periods = usize::from(shield.plan().unwrap().go);
+    let nothing = seen(vehicle(f32::NAN, 0.0), vehicle(0.0, 0.0));
+    let commands = (0..=periods).map(|_| {
+        let decision = shield.filter(&scene, &nothing, 0.0);
+        assert_eq!(decision.cause, Cause::Fallback(Fault::Ego));
+        decision.acceleration
+    });
+    (periods, commands.collect())
+}
+
 #[test]
 fn without_eyes_the_ego_carries_out_its_plan() {
-    let mut shield = Shield::new(WORST).unwrap();
-    let scene = crossing();
-    // Fast, and near its zone: the only safe plan is to clear it.
-    let go = shield.filter(&scene, &seen(vehicle(50.0, 10.0), vehicle(10.0, 5.0)), 3.0);
-    assert_eq!(go.cause, Cause::Policy);
-    let periods = shield.plan().unwrap().go;
+    let (periods, commands) = blind::<Sound>();
     assert!(periods > 5, "{periods}");
-    let blind = seen(vehicle(f32::NAN, 0.0), vehicle(0.0, 0.0));
-    for _ in 0..periods {
-        let decision = shield.filter(&scene, &blind, 0.0);
-        assert_eq!(decision.cause, Cause::Fallback(Fault::Ego));
-        assert_eq!(decision.acceleration, 3.0);
+    let (last, going) = commands.split_last().unwrap();
+    assert!(going.iter().all(|&a| a == 3.0));
+    assert_eq!(*last, -3.0);
+}
+
+struct Stale;
+impl Rules for Stale {
+    fn tail(plan: Plan) -> Plan {
+        plan
     }
-    assert_eq!(shield.filter(&scene, &blind, 3.0).acceleration, -3.0);
+}
+
+#[test]
+fn a_stale_plan_is_noticed() {
+    let (_, commands) = blind::<Stale>();
+    assert_eq!(commands.last(), Some(&3.0), "it should have braked");
+}
+
+struct FarthestFirst;
+impl Rules for FarthestFirst {
+    fn sooner(a: &hazard::Hazard, b: &hazard::Hazard) -> bool {
+        a.target > b.target
+    }
+}
+
+#[test]
+fn zones_in_the_wrong_order_are_noticed() {
+    // Too fast to stop before the first zone; the second, 20 m on, is taken for ever.
+    let second = route(&[(35.0, -60.0), (35.0, 60.0)]);
+    let scene = Scene::<2>::new(path(&east()), &[path(&north()), path(&second)]).unwrap();
+    let seen = Observation {
+        ego: vehicle(54.0, 5.0),
+        others: [Some(vehicle(0.0, 5.0)), Some(vehicle(60.0, 0.0))],
+    };
+    let margin = |shield: Result<f32, Fault>| shield.unwrap();
+    let sound = Shield::<2>::new(WORST).unwrap();
+    assert!(margin(sound.margin(&scene, &seen, 0.0, 0.0)) >= 0.0);
+    let wrong = Shield::<2, FarthestFirst>::with_rules(WORST).unwrap();
+    assert!(margin(wrong.margin(&scene, &seen, 0.0, 0.0)) < 0.0);
 }
 
 #[test]

@@ -53,7 +53,7 @@ impl Setup {
 
     /// The set-ups of a campaign, each with its name.
     #[must_use]
-    pub fn all() -> [(&'static str, Self); 11] {
+    pub fn all() -> [(&'static str, Self); 12] {
         let among = |vehicles| Self {
             vehicles,
             ..Self::ADVERSARIES
@@ -81,6 +81,7 @@ impl Setup {
             ("merging", merging(among(3))),
             ("sensing errors", noisy(among(3))),
             ("blackouts", noisy(blind(0.02, among(3)))),
+            ("often blind", blind(0.06, among(7))),
             ("mostly blind", blind(0.3, among(5))),
             ("all shielded", Self::everyone(worst, 4)),
             ("all shielded, merging", merging(Self::everyone(worst, 4))),
