@@ -15,6 +15,7 @@ pub mod kinematics;
 pub mod metrics;
 pub mod output;
 pub mod overlap;
+pub mod property;
 pub mod reward;
 pub mod sight;
 pub mod statistics;

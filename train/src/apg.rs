@@ -11,6 +11,7 @@
 //! learns to get out of where it has got itself into.
 
 use crate::adam::{Adam, clip};
+use crate::claims::{self, Claims, Hard};
 use crate::closed_loop::{ClosedLoop, Cost, Start};
 use crate::inputs::Inputs;
 use crate::network::Network;
@@ -18,6 +19,7 @@ use crate::pilot::Pilot;
 use cede_controller::{FeatureSet, Perspective};
 use cede_sim::Sight;
 use cede_sim::State;
+use cede_sim::property::StateProperty;
 use core::f32::consts::PI;
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
@@ -59,6 +61,8 @@ pub struct Settings {
     pub clip: f32,
     /// What it costs to drive unlike the humans.
     pub cost: Cost,
+    /// How claims are learned, where there are any.
+    pub claims: claims::Settings,
 }
 
 impl Default for Settings {
@@ -78,6 +82,7 @@ impl Default for Settings {
             speed_jitter: 0.15,
             clip: 1.0,
             cost: Cost::default(),
+            claims: claims::Settings::default(),
         }
     }
 }
@@ -97,11 +102,13 @@ pub struct Progress {
     random: Pcg64,
     update: u32,
     places: Vec<Start>,
+    hard: Hard,
 }
 
 /// A training run over encounters.
 pub struct Apg<'e> {
     progress: Progress,
+    claims: Claims,
     sights: &'e [Sight<'e>],
     own: usize,
     chunks: Vec<Chunk>,
@@ -134,6 +141,7 @@ impl<'e> Apg<'e> {
             random,
             update: 0,
             places: Vec::new(),
+            hard: Hard::new(),
         };
         Self::resume(progress, sights, own)
     }
@@ -147,9 +155,19 @@ impl<'e> Apg<'e> {
         assert!((1..=sights.len()).contains(&own));
         Self {
             progress,
+            claims: Claims::default(),
             sights,
             own,
             chunks: Vec::new(),
+        }
+    }
+
+    /// The same run, which also learns what `properties` claim.
+    #[must_use]
+    pub fn with_claims(self, properties: &[StateProperty]) -> Self {
+        Self {
+            claims: Claims::new(properties),
+            ..self
         }
     }
 
@@ -202,10 +220,18 @@ impl<'e> Apg<'e> {
         let rate = settings.rate * 0.5 * (1.0 + libm::cosf(PI * done));
         let limit = settings.clip;
         self.place();
-        let cost = self.drive(horizon);
+        let mut cost = self.drive(horizon);
         let gradient = self.chunks.first_mut().map(|chunk| &mut chunk.gradient)?;
-        clip(gradient, limit);
         let progress = &mut self.progress;
+        cost += self.claims.learn(
+            &progress.settings.claims,
+            &progress.network,
+            &progress.inputs,
+            &mut progress.hard,
+            &mut progress.random,
+            gradient,
+        );
+        clip(gradient, limit);
         progress
             .adam
             .step(progress.network.parameters_mut(), gradient, rate);

@@ -107,6 +107,7 @@ mod tests {
         let lessons = Lessons {
             courses: Vec::new(),
             own: sights.len(),
+            claims: Vec::new(),
             sights,
         };
         let settings = Algorithm::Bc

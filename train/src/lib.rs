@@ -10,6 +10,7 @@ pub mod adam;
 pub mod apg;
 pub mod bc;
 pub mod checkpoint;
+pub mod claims;
 pub mod closed_loop;
 pub mod episodes;
 pub mod gaussian;

@@ -4,9 +4,13 @@ use cede_sim::Encounter;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 
-/// SHA-256 of all that training reads of `encounters`: the same data, the same hash.
+/// SHA-256 of all that training reads of `encounters`, and of the text of its `claims` (empty where
+/// there are none): the same data, the same hash.
 #[must_use]
-pub fn data_hash<'e>(encounters: impl IntoIterator<Item = &'e Encounter>) -> [u8; 32] {
+pub fn data_hash<'e>(
+    encounters: impl IntoIterator<Item = &'e Encounter>,
+    claims: &str,
+) -> [u8; 32] {
     let mut hash = Sha256::new();
     for encounter in encounters {
         let id = &encounter.id;
@@ -29,6 +33,7 @@ pub fn data_hash<'e>(encounters: impl IntoIterator<Item = &'e Encounter>) -> [u8
             }
         }
     }
+    hash.update(claims);
     hash.finalize().into()
 }
 
@@ -87,9 +92,11 @@ mod tests {
     #[test]
     fn a_changed_sample_changes_the_hash() {
         let mut dataset = Dataset::synthetic(3, 1);
-        let before = data_hash(&dataset.encounters);
-        assert_eq!(before, data_hash(&Dataset::synthetic(3, 1).encounters));
+        let before = data_hash(&dataset.encounters, "");
+        assert_eq!(before, data_hash(&Dataset::synthetic(3, 1).encounters, ""));
         dataset.encounters[1].participants[0].record[2].v += 1e-3;
-        assert_ne!(before, data_hash(&dataset.encounters));
+        let after = data_hash(&dataset.encounters, "");
+        assert_ne!(before, after);
+        assert_ne!(after, data_hash(&dataset.encounters, "[[property]]"));
     }
 }

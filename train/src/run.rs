@@ -7,6 +7,7 @@ use crate::learner::Rates;
 use crate::pilot::Pilot;
 use crate::sac::{self, Sac};
 use cede_sim::Sight;
+use cede_sim::property::StateProperty;
 use serde::{Deserialize, Serialize};
 
 /// The algorithms by their names on the command line.
@@ -142,6 +143,8 @@ pub struct Lessons<'e> {
     pub sights: Vec<Sight<'e>>,
     /// See [`Lessons::sights`].
     pub own: usize,
+    /// What will be claimed of the policy; only the analytic policy gradient learns it.
+    pub claims: Vec<StateProperty>,
 }
 
 /// All that a resumed run needs to go on bit for bit.
@@ -192,7 +195,8 @@ impl<'e> Run<'e> {
                 Self::Sac(Box::new(Sac::new(settings, &lessons.courses, seed)))
             }
             Settings::Apg(settings) => {
-                Self::Apg(Apg::new(settings, &lessons.sights, lessons.own, seed))
+                let run = Apg::new(settings, &lessons.sights, lessons.own, seed);
+                Self::Apg(run.with_claims(&lessons.claims))
             }
         }
     }
@@ -208,7 +212,8 @@ impl<'e> Run<'e> {
                 Self::Sac(Box::new(Sac::resume(*progress, &lessons.courses)))
             }
             Progress::Apg(progress) => {
-                Self::Apg(Apg::resume(progress, &lessons.sights, lessons.own))
+                let run = Apg::resume(progress, &lessons.sights, lessons.own);
+                Self::Apg(run.with_claims(&lessons.claims))
             }
         }
     }

@@ -11,15 +11,13 @@
 mod features;
 mod gradient;
 mod interval;
-mod property;
 mod search;
 
-pub use features::Setting;
-pub use property::{Claim, Properties, PropertyError, StateProperty, Variable};
 pub use search::{Finding, Settled};
 
 use crate::network::{Activation, Feature, InputBox, Layer, Matrix, Network};
 use cede_controller::{FeatureSet, Perspective, Weights};
+use cede_sim::property::Setting;
 
 /// A policy as the verifier sees it: the network that gives the ego's mean, and its features.
 pub struct Subject<'a> {

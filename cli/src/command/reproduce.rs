@@ -166,6 +166,7 @@ impl<'d> Job<'d> {
             },
             sights: self.training.iter().map(|e| Sight::new(e)).collect(),
             own: self.training.len(),
+            claims: Vec::new(),
         };
         let provenance = Provenance {
             algorithm: self.algorithm.name().to_owned(),
@@ -173,7 +174,7 @@ impl<'d> Job<'d> {
             seed: self.seed,
             data: format!("recordings of {}", args.source.site),
             encounters: self.training.len(),
-            data_hash: data_hash(self.training.iter().copied()),
+            data_hash: data_hash(self.training.iter().copied(), ""),
             command: "cede reproduce".to_owned(),
         };
         let mut run = Run::new(settings, &lessons, self.seed);

@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::interrupt;
 use crate::source::Source;
 use cede_sim::data::Split;
+use cede_sim::property::{Properties, StateProperty};
 use cede_sim::{Dataset, Encounter, Sight, output};
 use cede_train::checkpoint::{Checkpoint, CheckpointError};
 use cede_train::episodes::Course;
@@ -31,6 +32,9 @@ pub(crate) struct Args {
     /// Also learn from every two vehicles of the training files whose ways cross or merge
     #[arg(long)]
     every_pair: bool,
+    /// Properties that the policy is to have, for `apg` to learn beside driving
+    #[arg(long, value_name = "FILE.toml")]
+    claims: Option<PathBuf>,
     /// Seed of every random choice of the training
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -107,7 +111,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     let more = args.more(&dataset);
     let encounters = || own.iter().copied().chain(&more);
-    let hash = data_hash(encounters());
+    let (claims, text) = args.claims()?;
+    let hash = data_hash(encounters(), &text);
     let lessons = Lessons {
         courses: match settings {
             Settings::Sac(_) => own.iter().map(|e| Course::new(e)).collect(),
@@ -115,6 +120,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         },
         sights: encounters().map(Sight::new).collect(),
         own: own.len(),
+        claims,
     };
     let mut run = args.begin(&settings, &lessons, hash)?;
     args.advance(&mut run, &settings, &lessons, hash)?;
@@ -126,11 +132,7 @@ impl Args {
     fn settings(&self) -> Result<Settings, Failure> {
         let mut settings = self.algorithm.0.settings();
         if let Some(path) = &self.settings {
-            let text = std::fs::read_to_string(path).map_err(|error| {
-                let problem = format!("cannot read {}: {error}", path.display());
-                Failure::input(problem, "check the path")
-            })?;
-            settings = with(&settings, &text, &path.display().to_string())?;
+            settings = with(&settings, &read(path)?, &path.display().to_string())?;
         }
         for set in &self.set {
             settings = with(&settings, &quoted(set), "--set")?;
@@ -147,6 +149,23 @@ impl Args {
         site.every_pair = true;
         let all = Dataset::new(site, dataset.recordings.clone());
         all.split(Split::Train).cloned().collect()
+    }
+
+    /// What is to be claimed of the policy, and the text that says so.
+    fn claims(&self) -> Result<(Vec<StateProperty>, String), Failure> {
+        let Some(path) = &self.claims else {
+            return Ok(Default::default());
+        };
+        if !matches!(self.algorithm.0, Algorithm::Apg) {
+            return Err(Failure::input(
+                format!("{} learns no claims", self.algorithm.0.name()),
+                "leave out --claims, or train apg",
+            ));
+        }
+        let text = read(path)?;
+        let properties = Properties::read(&text)
+            .map_err(|error| Failure::input(format!("{}: {error}", path.display()), "mend it"))?;
+        Ok((properties.property, text))
     }
 
     fn log(&self) -> Result<Option<Log>, Failure> {
@@ -253,6 +272,9 @@ impl Args {
         if self.every_pair {
             command += " --every-pair";
         }
+        if let Some(path) = &self.claims {
+            command += &format!(" --claims {}", path.display());
+        }
         command += &format!(" --seed {}", self.seed);
         for set in &self.set {
             command += &format!(" --set {set}");
@@ -293,6 +315,13 @@ fn quoted(set: &str) -> String {
         Some((name, value)) if set.parse::<toml::Table>().is_err() => format!("{name}=\"{value}\""),
         _ => set.to_owned(),
     }
+}
+
+fn read(path: &Path) -> Result<String, Failure> {
+    std::fs::read_to_string(path).map_err(|error| {
+        let problem = format!("cannot read {}: {error}", path.display());
+        Failure::input(problem, "check the path")
+    })
 }
 
 fn unwritable(folder: &Path, error: &std::io::Error) -> Failure {

@@ -12,17 +12,7 @@ use crate::network::{Feature, InputBox};
 use cede_controller::features::{CREEP, HORIZON, LIMIT};
 use cede_controller::svo::MIN_DISTANCE;
 use cede_controller::{ConflictKind, FeatureSet, RightOfWay};
-
-/// What does not vary within a region.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Setting {
-    /// How the routes conflict.
-    pub kind: ConflictKind,
-    /// Who may go first.
-    pub right_of_way: RightOfWay,
-    /// Sines of the turns still to come, the ego's and the other's; positive to the left.
-    pub turns: [f32; 2],
-}
+use cede_sim::property::Setting;
 
 /// Relative allowance for the `f32` rounding of a feature.
 const SINGLE: f64 = 16.0 * (f32::EPSILON as f64) * 0.5;

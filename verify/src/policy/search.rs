@@ -1,14 +1,13 @@
 //! Branch and bound over boxes of states.
 
 use super::Subject;
-use super::features::Setting;
 use super::gradient::gradient;
-use super::property::{Claim, StateProperty};
 use crate::network::{
     Bounder, Feature, Halfspace, InputBox, Network, check,
     proof::{Cell, Proof, Split},
 };
-use cede_controller::{Footprint, Pair, Part, Party, Point, Policy, Pose};
+use cede_controller::Policy;
+use cede_sim::property::{Claim, Place, Setting, StateProperty, Variable};
 use rayon::prelude::*;
 use std::time::Instant;
 
@@ -20,7 +19,7 @@ pub enum Finding {
     /// The controller, run at this state, breaks the claim.
     Refuted {
         /// Ego's distance and speed, other's distance and speed.
-        state: [f64; 4],
+        state: Place,
         /// What did not vary.
         setting: Setting,
         /// The acceleration that the controller proposed there (m/s²).
@@ -62,7 +61,7 @@ struct Node {
 enum Step {
     Proved(Cell),
     Split(Split, [Node; 2]),
-    Broken([f64; 4], f64),
+    Broken(Place, f64),
     Stuck,
 }
 
@@ -136,7 +135,7 @@ struct Task<'a> {
 
 impl<'a> Task<'a> {
     fn new(subject: &'a Subject<'a>, property: &'a StateProperty, setting: Setting) -> Self {
-        let region = property.region();
+        let region = region(property);
         let features: Vec<Feature> = subject
             .features(&region, &setting)
             .into_iter()
@@ -165,7 +164,7 @@ impl<'a> Task<'a> {
         };
         let mut finding = Finding::Proved;
         let mut stack = vec![Node {
-            region: self.property.region(),
+            region: region(self.property),
             bounds: self.root.clone(),
             cell: 0,
         }];
@@ -234,8 +233,8 @@ impl<'a> Task<'a> {
             worker.widths(&mut scores);
         }
         for point in candidates {
-            let state: [f64; 4] = std::array::from_fn(|i| f64::from(point[i] as f32));
-            if self.property.region().contains(&state)
+            let state: Place = std::array::from_fn(|i| f64::from(point[i] as f32));
+            if region(self.property).contains(&state)
                 && let Some(acceleration) = self.broken(state)
             {
                 return Step::Broken(state, acceleration);
@@ -263,13 +262,13 @@ impl<'a> Task<'a> {
     }
 
     /// The controller's acceleration at a state, if it breaks the claim.
-    fn broken(&self, state: [f64; 4]) -> Option<f64> {
+    fn broken(&self, state: Place) -> Option<f64> {
         let a = self.drive(state);
-        let quotient = |with: super::Variable| {
+        let quotient = |with: Variable| {
             let mut shifted = state;
             shifted[with.index()] = f64::from((state[with.index()] + STEP) as f32);
             let step = shifted[with.index()] - state[with.index()];
-            let inside = self.property.region().contains(&shifted);
+            let inside = region(self.property).contains(&shifted);
             inside.then(|| (self.drive(shifted) - a, step))
         };
         let broken = match self.property.claim {
@@ -286,13 +285,13 @@ impl<'a> Task<'a> {
     }
 
     /// What the controller proposes at a state.
-    fn drive(&self, state: [f64; 4]) -> f64 {
-        f64::from(Policy::from(self.subject.weights).act(&pair(state, &self.setting))[0])
+    fn drive(&self, state: Place) -> f64 {
+        f64::from(Policy::from(self.subject.weights).act(&self.setting.pair(state))[0])
     }
 
     fn check(&self, atom: &Halfspace, proof: &Proof) -> Result<usize, check::CheckError> {
         let query = crate::network::Query {
-            region: self.property.region(),
+            region: region(self.property),
             unsafe_set: vec![vec![atom.clone()]],
         };
         let front = |region: &InputBox| {
@@ -306,28 +305,12 @@ impl<'a> Task<'a> {
     }
 }
 
-/// The pair of vehicles at a state, in the part of the left-turner.
-pub(super) fn pair([d, v, other_d, other_v]: [f64; 4], setting: &Setting) -> Pair {
-    let party = |distance: f64, speed: f64, turn: f32| Party {
-        pose: Pose {
-            position: Point::new(0.0, 0.0),
-            direction: Point::new(1.0, 0.0),
-        },
-        // The feature is the sine of the angle from the direction to the exit.
-        exit: Point::new((1.0 - turn * turn).max(0.0).sqrt(), turn),
-        speed: speed as f32,
-        distance: distance as f32,
-        footprint: Footprint::PAPER,
-        leader: None,
-        crosser: None,
-    };
-    Pair {
-        ego: party(d, v, setting.turns[0]),
-        other: party(other_d, other_v, setting.turns[1]),
-        kind: setting.kind,
-        right_of_way: setting.right_of_way,
-        part: Part::Left,
-        last_svo: std::f32::consts::FRAC_PI_4,
+/// The box of a property's states.
+pub(super) fn region(property: &StateProperty) -> InputBox {
+    let sides = property.region();
+    InputBox {
+        lower: sides.map(|s| s[0]).to_vec(),
+        upper: sides.map(|s| s[1]).to_vec(),
     }
 }
 

@@ -1,8 +1,8 @@
-use super::search::pair;
+use super::search::region;
 use super::*;
-use crate::policy::property::{Claim, Kind, Right, Variable};
 use cede_controller::weights::Draft;
 use cede_controller::{ConflictKind, Mlp, Policy, RightOfWay};
+use cede_sim::property::{Claim, Kind, Right, StateProperty, Variable};
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -91,14 +91,14 @@ fn sampled(file: &[u32]) -> (f64, f64) {
     let policy = Policy::new(file).expect("a sound file");
     let mut random = Pcg64::seed_from_u64(9);
     let property = property(Claim::AccelerationAtMost(0.0));
-    let region = property.region();
+    let region = region(&property);
     let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
     for setting in property.settings() {
         for _ in 0..20_000 {
             let state = std::array::from_fn(|i| {
                 region.lower[i] + random.random::<f64>() * (region.upper[i] - region.lower[i])
             });
-            let a = f64::from(policy.act(&pair(state, &setting))[0]);
+            let a = f64::from(policy.act(&setting.pair(state))[0]);
             (least, most) = (least.min(a), most.max(a));
         }
     }
@@ -165,38 +165,6 @@ fn the_papers_raw_features_are_refused() {
     assert!(Subject::new(Weights::parse(&file).expect("a sound file")).is_err());
 }
 
-#[test]
-fn property_files_are_read_or_refused_with_a_reason() {
-    let text = r#"
-        [[property]]
-        id = "SR-20"
-        title = "Yields"
-        ego_distance = [5, 30]
-        ego_speed = [0, 8]
-        other_distance = [-2, 10]
-        other_speed = [4, 10]
-        conflicts = ["crossing", "merging"]
-        right_of_way = ["other"]
-        claim = { acceleration_at_most = -0.5 }
-    "#;
-    let read = Properties::read(text).expect("well formed");
-    assert_eq!(read.property[0].settings().len(), 2);
-    assert_eq!(read.property[0].claim, Claim::AccelerationAtMost(-0.5));
-    let slope = text.replace(
-        "{ acceleration_at_most = -0.5 }",
-        r#"{ rises_at_least = { with = "other_distance", slope = 0 } }"#,
-    );
-    assert!(Properties::read(&slope).is_ok());
-    for (from, to) in [
-        ("[5, 30]", "[30, 5]"),
-        ("[0, 8]", "[-1, 8]"),
-        ("[\"other\"]", "[]"),
-        ("acceleration", "velocity"),
-    ] {
-        assert!(Properties::read(&text.replace(from, to)).is_err(), "{to}");
-    }
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
@@ -223,7 +191,7 @@ proptest! {
             let state: [f64; 4] = std::array::from_fn(|i| {
                 single(region.lower[i] + share[i] * (region.upper[i] - region.lower[i])).clamp(region.lower[i], region.upper[i])
             });
-            let inputs = Policy::from(weights).inputs(&pair(state, &setting));
+            let inputs = Policy::from(weights).inputs(&setting.pair(state));
             for (k, ((feature, _), input)) in features.iter().zip(inputs).enumerate() {
                 let linear: f64 = feature.constant + feature.slopes.iter().zip(&state).map(|(s, x)| s * x).sum::<f64>();
                 let off = (f64::from(input) - linear).abs();

@@ -1,12 +1,52 @@
-//! Properties of a policy as a readable file.
+//! Properties of a policy as a readable file: what the verifier proves and training can aim at.
 
-use super::features::Setting;
-use crate::network::InputBox;
-use cede_controller::{ConflictKind, RightOfWay};
-use serde::Deserialize;
+use cede_controller::{ConflictKind, Footprint, Pair, Part, Party, Point, Pose, RightOfWay};
+use serde::{Deserialize, Serialize};
+
+/// Ego's metres to its conflict point and speed in m/s, then the other's.
+pub type Place = [f64; 4];
+
+/// What does not vary within a region.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setting {
+    /// How the routes conflict.
+    pub kind: ConflictKind,
+    /// Who may go first.
+    pub right_of_way: RightOfWay,
+    /// Sines of the turns still to come, the ego's and the other's; positive to the left.
+    pub turns: [f32; 2],
+}
+
+impl Setting {
+    /// The pair of vehicles at a place (rounded to `f32`), nobody around them, as a left-turner sees it.
+    #[must_use]
+    pub fn pair(&self, [d, v, other_d, other_v]: Place) -> Pair {
+        let party = |distance: f64, speed: f64, turn: f32| Party {
+            pose: Pose {
+                position: Point::new(0.0, 0.0),
+                direction: Point::new(1.0, 0.0),
+            },
+            // The feature is the sine of the angle from the direction to the exit.
+            exit: Point::new((1.0 - turn * turn).max(0.0).sqrt(), turn),
+            speed: speed as f32,
+            distance: distance as f32,
+            footprint: Footprint::PAPER,
+            leader: None,
+            crosser: None,
+        };
+        Pair {
+            ego: party(d, v, self.turns[0]),
+            other: party(other_d, other_v, self.turns[1]),
+            kind: self.kind,
+            right_of_way: self.right_of_way,
+            part: Part::Left,
+            last_svo: core::f32::consts::FRAC_PI_4,
+        }
+    }
+}
 
 /// A file of properties (TOML, `[[property]]`).
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Properties {
     /// The properties.
@@ -14,7 +54,7 @@ pub struct Properties {
 }
 
 /// A property: a region of states and what is claimed there.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StateProperty {
     /// Identifier, SR-nn as in `docs/safety/`.
@@ -45,7 +85,7 @@ fn straight_on() -> Vec<[f32; 2]> {
 }
 
 /// See [`ConflictKind`].
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
     /// Crossing.
@@ -55,7 +95,7 @@ pub enum Kind {
 }
 
 /// See [`RightOfWay`].
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Right {
     /// The ego's.
@@ -67,7 +107,7 @@ pub enum Right {
 }
 
 /// A variable of the state.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Variable {
     /// Ego's distance.
@@ -89,7 +129,7 @@ impl Variable {
 }
 
 /// What is claimed of the acceleration a (m/s²) that the policy proposes for the ego.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Claim {
     /// a ≤ this.
@@ -143,9 +183,7 @@ impl Properties {
                     what,
                 })
             };
-            let region = property.region();
-            let mut sides = region.lower.iter().zip(&region.upper);
-            if !sides.all(|(lo, hi)| {
+            if !property.region().iter().all(|[lo, hi]| {
                 lo <= hi && lo.is_finite() && hi.is_finite() && lo.abs().max(hi.abs()) < 1e4
             }) {
                 return fault("a range is empty or beyond ± 10 km; give [least, most]");
@@ -165,19 +203,15 @@ impl Properties {
 }
 
 impl StateProperty {
-    /// The box of states.
+    /// Least and most of each of a place's numbers.
     #[must_use]
-    pub fn region(&self) -> InputBox {
-        let sides = [
+    pub fn region(&self) -> [[f64; 2]; 4] {
+        [
             self.ego_distance,
             self.ego_speed,
             self.other_distance,
             self.other_speed,
-        ];
-        InputBox {
-            lower: sides.map(|s| s[0]).to_vec(),
-            upper: sides.map(|s| s[1]).to_vec(),
-        }
+        ]
     }
 
     /// The same claim on a region whose widths are scaled about its centre.
@@ -217,5 +251,42 @@ impl StateProperty {
             }
         }
         settings
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn property_files_are_read_or_refused_with_a_reason() {
+        let text = r#"
+            [[property]]
+            id = "SR-20"
+            title = "Yields"
+            ego_distance = [5, 30]
+            ego_speed = [0, 8]
+            other_distance = [-2, 10]
+            other_speed = [4, 10]
+            conflicts = ["crossing", "merging"]
+            right_of_way = ["other"]
+            claim = { acceleration_at_most = -0.5 }
+        "#;
+        let read = Properties::read(text).expect("well formed");
+        assert_eq!(read.property[0].settings().len(), 2);
+        assert_eq!(read.property[0].claim, Claim::AccelerationAtMost(-0.5));
+        let slope = text.replace(
+            "{ acceleration_at_most = -0.5 }",
+            r#"{ rises_at_least = { with = "other_distance", slope = 0 } }"#,
+        );
+        assert!(Properties::read(&slope).is_ok());
+        for (from, to) in [
+            ("[5, 30]", "[30, 5]"),
+            ("[0, 8]", "[-1, 8]"),
+            ("[\"other\"]", "[]"),
+            ("acceleration", "velocity"),
+        ] {
+            assert!(Properties::read(&text.replace(from, to)).is_err(), "{to}");
+        }
     }
 }
