@@ -5,14 +5,20 @@
 
 mod cases;
 mod model;
+mod sweep;
+mod why;
+
+pub(crate) use why::{Class, words};
 
 use crate::failure::Failure;
+use cede_controller::Contract;
 use cede_sim::data::Split;
 use cede_sim::evaluate::{Drive, Row};
-use cede_sim::{Dataset, Encounter, EncounterId, Role, output};
+use cede_sim::{Dataset, Encounter, EncounterId, Role, output, transparency};
 use model::{Case, Episodes, Interventions, Page};
 use std::collections::HashMap;
 use std::path::Path;
+use sweep::Panel;
 
 const PAGE: &str = include_str!("report/page/page.html");
 const STYLE: &str = include_str!("report/page/style.css");
@@ -20,8 +26,15 @@ const SCRIPT: &str = concat!(
     include_str!("report/page/charts.js"),
     include_str!("report/page/table.js"),
     include_str!("report/page/replay.js"),
+    include_str!("report/page/sweep.js"),
     include_str!("report/page/page.js"),
 );
+
+/// What the user typed.
+pub(crate) fn command() -> String {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    format!("cede {}", arguments.join(" "))
+}
 
 /// Gathers what the page shows, row by row.
 pub(crate) struct Report {
@@ -76,6 +89,14 @@ impl Report {
             .distributions
             .push(Episodes::of(&driver, row, drives));
         self.page.rows.push(row.clone());
+    }
+
+    /// Adds what the shield would have allowed the recorded drivers of `dataset`, under contracts around `contract`.
+    pub(crate) fn sweep(&mut self, dataset: &Dataset, contract: Contract) {
+        let encounters: Vec<&Encounter> = dataset.encounters.iter().collect();
+        // The contracts that can be named are in range.
+        let rows = transparency::sweep(&encounters, contract).unwrap_or_default();
+        self.page.sweep = Panel::all(&rows);
     }
 
     /// Writes the page.

@@ -10,10 +10,15 @@ fn cede(folder: &Path, arguments: &[&str]) -> assert_cmd::assert::Assert {
 
 /// A left-turner from the south and an oncoming vehicle that goes first, as a generic CSV.
 fn tracks() -> String {
+    tracks_from(30.0)
+}
+
+/// The same, but the oncoming vehicle comes from `start` m north of the origin.
+fn tracks_from(start: f64) -> String {
     let mut csv = String::from("track,t,x,y\n");
     for step in 0..150 {
         let t = f64::from(step) * 0.1;
-        csv += &format!("2,{t:.1},-2,{:.3}\n", 30.0 - 8.0 * t);
+        csv += &format!("2,{t:.1},-2,{:.3}\n", start - 8.0 * t);
         let way = 5.03 * t - 40.0;
         let (x, y) = if way < 0.0 {
             (2.0, way - 4.0)
@@ -67,6 +72,21 @@ fn the_encounters_of_a_generic_file() {
         "{shown}"
     );
     assert!(folder.path().join("page.html").is_file());
+}
+
+#[test]
+fn a_replay_says_why_the_shield_acted() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("tracks_3.csv"), tracks_from(55.0)).unwrap();
+    let replay = ["replay", "tracks_3.csv", "--site", "X", "--shield", "on"];
+    let driven = [&replay[..], &["--driver", "initial-speed"]].concat();
+    let shown = cede(folder.path(), &driven).success();
+    let shown = String::from_utf8(shown.get_output().stdout.clone()).unwrap();
+    let acted = shown.split("where the shield acted:").nth(1);
+    assert!(
+        acted.is_some_and(|lines| lines.contains("left-turner  shielded: ")),
+        "{shown}"
+    );
 }
 
 #[test]

@@ -32,12 +32,13 @@ fn open(browser: &Path, page: &Path) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-fn report(folder: &Path) -> PathBuf {
+fn report(folder: &Path, shield: &str) -> PathBuf {
     let page = folder.join("report.html");
     assert_cmd::Command::cargo_bin("cede")
         .unwrap()
         .args(["evaluate", "--data", "synthetic", "--split", "test"])
         .args(["--driver", "replay,nearer-first", "--until", "cleared"])
+        .args(["--shield", shield])
         .arg("--report")
         .arg(&page)
         .assert()
@@ -56,7 +57,7 @@ fn part<'p>(page: &'p str, begin: &str, end: &str) -> &'p str {
 fn the_page_draws_itself_without_an_error() {
     let Some(browser) = browser() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let dom = open(&browser, &report(folder.path()));
+    let dom = open(&browser, &report(folder.path(), "off"));
     let root = part(&dom, "<html", ">");
     assert!(!root.contains("data-error"), "{root}");
     assert!(root.contains("data-status=\"ready\""), "{root}");
@@ -65,6 +66,7 @@ fn the_page_draws_itself_without_an_error() {
     assert!(table.contains("nearer-first"));
     let section = |id: &str| part(&dom, &format!("<section id=\"{id}\""), "</section>");
     let hidden = |id: &str| part(section(id), "<section", ">").contains("hidden");
+    assert!(part(&dom, "<p id=\"why\"", ">").contains("hidden"));
     for id in ["replay", "distributions"] {
         assert!(!hidden(id), "{id} is hidden");
         assert!(
@@ -73,14 +75,27 @@ fn the_page_draws_itself_without_an_error() {
         );
         assert!(section(id).contains("<path d=\"M"), "{id} has no curve");
     }
-    assert!(hidden("shield"), "no shield was on");
+    assert!(hidden("shield") && hidden("sweep"), "no shield was on");
+}
+
+#[test]
+fn the_page_says_where_and_why_the_shield_acted() {
+    let Some(browser) = browser() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let dom = open(&browser, &report(folder.path(), "on"));
+    let root = part(&dom, "<html", ">");
+    assert!(!root.contains("data-error"), "{root}");
+    let section = |id: &str| part(&dom, &format!("<section id=\"{id}\""), "</section>");
+    assert!(section("replay").contains("s: shielded: "), "no mark");
+    assert!(section("shield").contains(" steps</span>"), "no reasons");
+    assert_eq!(section("sweep").matches("class=\"named\"").count(), 4);
 }
 
 #[test]
 fn a_broken_script_is_noticed() {
     let Some(browser) = browser() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let page = report(folder.path());
+    let page = report(folder.path(), "off");
     let html = std::fs::read_to_string(&page).unwrap();
     let broken = html.replacen("tables(document", "tablez(document", 1);
     assert_ne!(html, broken);
@@ -96,7 +111,7 @@ fn a_broken_script_is_noticed() {
 #[test]
 fn the_page_needs_no_network() {
     let folder = tempfile::tempdir().unwrap();
-    let html = std::fs::read_to_string(report(folder.path())).unwrap();
+    let html = std::fs::read_to_string(report(folder.path(), "off")).unwrap();
     for reference in [
         "src=\"http",
         "href=\"http",

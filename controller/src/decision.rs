@@ -105,11 +105,7 @@ pub enum Breach {
 
 impl fmt::Display for Decision {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.cause {
-            Cause::Policy => f.write_str("policy")?,
-            Cause::Shielded(Intervention { reason, .. }) => write!(f, "shielded: {reason}")?,
-            Cause::Fallback(fault) => write!(f, "fallback: {fault}")?,
-        }
+        self.cause.fmt(f)?;
         match self.breach {
             None => Ok(()),
             Some(Breach::Ego) => f.write_str("; the ego did not do as it was told"),
@@ -118,30 +114,60 @@ impl fmt::Display for Decision {
     }
 }
 
+impl fmt::Display for Cause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Policy => f.write_str("policy"),
+            Self::Shielded(Intervention { reason, .. }) => write!(f, "shielded: {reason}"),
+            Self::Fallback(fault) => write!(f, "fallback: {fault}"),
+        }
+    }
+}
+
 impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (Self::Arrival { other, .. } | Self::Entry { other, .. } | Self::Stop { other, .. }) =
+            self;
+        self.tell(f, format_args!("other {other}"))
+    }
+}
+
+impl Reason {
+    /// The reason in words, with `other` for whom it is about: `the lorry may arrive in 1.3 s, …`.
+    ///
+    /// Never panics.
+    pub fn naming<'n>(&self, other: &'n str) -> impl fmt::Display + use<'n> {
+        Named(*self, other)
+    }
+
+    fn tell(&self, f: &mut fmt::Formatter<'_>, who: fmt::Arguments<'_>) -> fmt::Result {
         match *self {
             Self::Arrival {
-                other,
-                arrives,
-                clears,
+                arrives, clears, ..
             } if arrives > 0.0 => write!(
                 f,
-                "other {other} may arrive in {arrives:.1} s, clearing needs {clears:.1} s"
+                "{who} may arrive in {arrives:.1} s, clearing needs {clears:.1} s"
             ),
-            Self::Arrival { other, .. } => write!(f, "other {other} is in its zone"),
-            Self::Entry { other, gap, needs } => write!(
+            Self::Arrival { .. } => write!(f, "{who} is in its zone"),
+            Self::Entry { gap, needs, .. } => write!(
                 f,
-                "other {other} may be as near as {gap:.1} m, entering needs {needs:.1} m"
+                "{who} may be as near as {gap:.1} m, entering needs {needs:.1} m"
             ),
             Self::Stop {
-                other,
-                available,
-                needs,
+                available, needs, ..
             } => write!(
                 f,
-                "stopping needs {needs:.1} m, to other {other} there are {available:.1} m"
+                "stopping needs {needs:.1} m, to {who} there are {available:.1} m"
             ),
         }
+    }
+}
+
+/// A reason, and the name of the other.
+struct Named<'n>(Reason, &'n str);
+
+impl fmt::Display for Named<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.tell(f, format_args!("{}", self.1))
     }
 }

@@ -28,6 +28,7 @@ pub use replay::Replay;
 pub use shielded::Shielded;
 
 use crate::encounter::{Encounter, Participant};
+use cede_controller::Cause;
 
 /// State of a vehicle along its route.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -80,9 +81,10 @@ pub trait Driver {
     /// The acceleration (m/s²) for the step that begins now. The simulation clamps it to [−3, 3].
     fn accelerate(&mut self, view: &View<'_>) -> f32;
 
-    /// Whether a safety shield overruled the driver in the step that it decided last.
-    fn shielded(&self) -> bool {
-        false
+    /// Who chose the acceleration of the step that was decided last: the driver itself, or a safety
+    /// shield in its stead, and why. The others are counted as in the driver's [`scene`].
+    fn cause(&self) -> Cause {
+        Cause::Policy
     }
 }
 

@@ -4,7 +4,7 @@ use crate::driver::{Driver, State, View};
 use crate::encounter::{Encounter, Role};
 use crate::kinematics::{advance, clamp_acceleration};
 use crate::overlap::OrientedBox;
-use cede_controller::Footprint;
+use cede_controller::{Cause, Footprint};
 
 /// When an episode is over, if neither a collision nor a time-out ends it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -44,8 +44,17 @@ pub struct Episode {
 pub struct Action {
     /// The acceleration (m/s²) that it was given, within ±3.
     pub acceleration: f32,
+    /// Who chose it: the driver ([`Cause::Policy`]), or a safety shield, and why. The only other that a
+    /// judged vehicle's shield knows, number 0, is the other judged one.
+    pub cause: Cause,
+}
+
+impl Action {
     /// Whether a safety shield chose it.
-    pub shielded: bool,
+    #[must_use]
+    pub fn shielded(&self) -> bool {
+        self.cause != Cause::Policy
+    }
 }
 
 impl Episode {
@@ -208,7 +217,7 @@ impl<'a> World<'a> {
             };
             Action {
                 acceleration: clamp_acceleration(drivers[ego].accelerate(&view)),
-                shielded: drivers[ego].shielded(),
+                cause: drivers[ego].cause(),
             }
         })
     }

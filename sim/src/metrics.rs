@@ -8,7 +8,7 @@ pub use svo::{recorded_states, svo_series};
 pub use ttc::HORIZON as TTC_HORIZON;
 
 use crate::encounter::{Encounter, Role, STEP};
-use crate::episode::{End, Episode};
+use crate::episode::{Action, End, Episode};
 
 /// Horizons of the position error in seconds.
 pub const HORIZONS: [u32; 3] = [1, 3, 5];
@@ -94,7 +94,7 @@ fn shielded(episode: &Episode, tested: &[Role]) -> f64 {
         .actions
         .iter()
         .flat_map(|actions| tested.iter().map(|&role| actions[role as usize]))
-        .filter(|action| action.shielded);
+        .filter(Action::shielded);
     overruled.count() as f64 / steps.max(1) as f64
 }
 
@@ -103,6 +103,7 @@ mod tests {
     use super::*;
     use crate::driver::{Driver, DriverFactory, InitialSpeed, Replay, View};
     use crate::fixture::crossing;
+    use cede_controller::{Cause, Fault};
 
     fn drive(encounter: &Encounter, mut drivers: [Box<dyn Driver>; 2]) -> Measures {
         let episode = Episode::run(encounter, &mut drivers, None);
@@ -121,8 +122,8 @@ mod tests {
             }
         }
 
-        fn shielded(&self) -> bool {
-            true
+        fn cause(&self) -> Cause {
+            Cause::Fallback(Fault::Unverified)
         }
     }
 

@@ -20,6 +20,15 @@ pub struct Transparency {
 }
 
 impl Transparency {
+    const fn none(role: Role, kind: ConflictKind) -> Self {
+        Self {
+            role,
+            kind,
+            steps: 0,
+            accepted: 0,
+        }
+    }
+
     /// Accepted steps over all; NaN without steps.
     #[must_use]
     pub fn share(&self) -> f64 {
@@ -40,54 +49,19 @@ pub fn transparency(
     encounters: &[&Encounter],
     contract: Contract,
 ) -> Result<Vec<Transparency>, ContractError> {
-    let shield = Shield::<1>::new(contract)?;
-    let counted: Vec<Transparency> = encounters
-        .par_iter()
-        .flat_map_iter(|encounter| {
-            [Role::Left, Role::Other].map(|role| count(&shield, encounter, role))
-        })
-        .collect();
-    let kinds = [
-        ConflictKind::Crossing,
-        ConflictKind::Merging,
-        ConflictKind::Following,
-        ConflictKind::None,
-    ];
-    let groups = kinds
-        .into_iter()
-        .flat_map(|kind| [(Role::Left, kind), (Role::Other, kind)]);
-    let total = |(role, kind)| {
-        let of = counted.iter().filter(|t| (t.role, t.kind) == (role, kind));
-        of.fold(
-            Transparency {
-                role,
-                kind,
-                steps: 0,
-                accepted: 0,
-            },
-            |sum, t| Transparency {
-                steps: sum.steps + t.steps,
-                accepted: sum.accepted + t.accepted,
-                ..sum
-            },
-        )
-    };
-    Ok(groups.map(total).filter(|t| t.steps > 0).collect())
+    let mut tables = tables(encounters, &[contract])?;
+    Ok(tables.pop().unwrap_or_default())
 }
 
-/// The share that is accepted under one contract of a sweep.
+/// What is accepted under one contract of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Swept {
     /// Hardest acceleration of the other, in m/s².
     pub acceleration: f32,
     /// Braking of the ego, in m/s².
     pub braking: f32,
-    /// Of which encounters.
-    pub kind: ConflictKind,
-    /// Steps at which both vehicles are there, of both roles.
-    pub steps: u64,
-    /// Those whose recorded acceleration the shield accepts.
-    pub accepted: u64,
+    /// Steps of one role in one kind of encounter.
+    pub counted: Transparency,
 }
 
 /// [`transparency`] under contracts that differ from `contract` in the other's acceleration
@@ -96,43 +70,78 @@ pub struct Swept {
 /// # Errors
 /// If a number of `contract` is out of its range.
 pub fn sweep(encounters: &[&Encounter], contract: Contract) -> Result<Vec<Swept>, ContractError> {
-    let mut rows = Vec::new();
-    for (half, braking) in (1..=8_u8).flat_map(|half| (3..=8_u8).map(move |b| (half, b))) {
-        let mut contract = contract;
-        contract.other.acceleration = 0.5 * f32::from(half);
-        contract.ego.braking = f32::from(braking);
-        let counted = transparency(encounters, contract)?;
-        for kind in [ConflictKind::Crossing, ConflictKind::Merging] {
-            let of = || counted.iter().filter(|row| row.kind == kind);
-            rows.push(Swept {
-                acceleration: contract.other.acceleration,
-                braking: contract.ego.braking,
-                kind,
-                steps: of().map(|row| row.steps).sum(),
-                accepted: of().map(|row| row.accepted).sum(),
-            });
-        }
-    }
-    Ok(rows)
+    let grid = (1..=8_u8).flat_map(|half| (3..=8_u8).map(move |braking| (half, braking)));
+    let contracts: Vec<Contract> = grid
+        .map(|(half, braking)| {
+            let mut contract = contract;
+            contract.other.acceleration = 0.5 * f32::from(half);
+            contract.ego.braking = f32::from(braking);
+            contract
+        })
+        .collect();
+    let tables = tables(encounters, &contracts)?;
+    let rows = contracts.iter().zip(tables).flat_map(|(contract, table)| {
+        table.into_iter().map(|counted| Swept {
+            acceleration: contract.other.acceleration,
+            braking: contract.ego.braking,
+            counted,
+        })
+    });
+    Ok(rows.collect())
 }
 
-fn count(shield: &Shield<1>, encounter: &Encounter, role: Role) -> Transparency {
-    let mut result = Transparency {
-        role,
-        kind: encounter.kind,
-        steps: 0,
-        accepted: 0,
+/// A table for each of `contracts`, without rows for what does not occur.
+fn tables(
+    encounters: &[&Encounter],
+    contracts: &[Contract],
+) -> Result<Vec<Vec<Transparency>>, ContractError> {
+    let shields: Vec<Shield<1>> = contracts
+        .iter()
+        .map(|&contract| Shield::new(contract))
+        .collect::<Result<_, _>>()?;
+    let counted: Vec<Vec<Transparency>> = encounters
+        .par_iter()
+        .flat_map_iter(|encounter| Role::BOTH.map(|role| count(&shields, encounter, role)))
+        .collect();
+    Ok((0..contracts.len())
+        .map(|i| table(&counted.iter().filter_map(|counts| counts.get(i))))
+        .collect())
+}
+
+fn table<'c>(counted: &(impl Iterator<Item = &'c Transparency> + Clone)) -> Vec<Transparency> {
+    let kinds = [
+        ConflictKind::Crossing,
+        ConflictKind::Merging,
+        ConflictKind::Following,
+        ConflictKind::None,
+    ];
+    let groups = kinds
+        .into_iter()
+        .flat_map(|kind| Role::BOTH.map(|role| (role, kind)));
+    let total = |(role, kind)| {
+        let of = counted.clone().filter(|t| (t.role, t.kind) == (role, kind));
+        of.fold(Transparency::none(role, kind), |sum, t| Transparency {
+            steps: sum.steps + t.steps,
+            accepted: sum.accepted + t.accepted,
+            ..sum
+        })
     };
+    groups.map(total).filter(|t| t.steps > 0).collect()
+}
+
+/// What each of `shields` accepts of one recorded drive.
+fn count(shields: &[Shield<1>], encounter: &Encounter, role: Role) -> Vec<Transparency> {
+    let mut counts = vec![Transparency::none(role, encounter.kind); shields.len()];
     let (mine, theirs) = (role as usize, 1 - role as usize);
     let (Some(ego), Some(other)) = (
         encounter.participants.get(mine),
         encounter.participants.get(theirs),
     ) else {
-        return result;
+        return counts;
     };
     // One other with the paper's footprint: there is a scene.
     let Ok(scene) = Scene::<1>::new(path(ego), &[path(other)]) else {
-        return result;
+        return counts;
     };
     let vehicle = |participant: &Participant, sample: &Sample| Vehicle {
         s: sample.s,
@@ -145,14 +154,14 @@ fn count(shield: &Shield<1>, encounter: &Encounter, role: Role) -> Transparency 
             ego: vehicle(ego, a),
             others: [Some(vehicle(other, b))],
         };
-        let margin = shield.margin(&scene, &observation, previous.unwrap_or(a.a), a.a);
-        result.steps += 1;
-        if margin.is_ok_and(|margin| margin >= 0.0) {
-            result.accepted += 1;
+        for (shield, count) in shields.iter().zip(&mut counts) {
+            let margin = shield.margin(&scene, &observation, previous.unwrap_or(a.a), a.a);
+            count.steps += 1;
+            count.accepted += u64::from(margin.is_ok_and(|margin| margin >= 0.0));
         }
         previous = Some(a.a);
     }
-    result
+    counts
 }
 
 fn path(participant: &Participant) -> Path<'_, 128> {

@@ -5,7 +5,7 @@ mod episodes;
 use crate::drivers::Drivers;
 use crate::failure::Failure;
 use crate::judge::{ContractName, ModeName, Plan, ShieldName, UntilName};
-use crate::report::Report;
+use crate::report::{Report, command};
 use crate::source::Source;
 use crate::{interrupt, table};
 use cede_sim::Dataset;
@@ -87,7 +87,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let mut report = args
         .report
         .as_ref()
-        .map(|_| Report::new(&dataset, &Args::command()));
+        .map(|_| Report::new(&dataset, &command()));
     let rows = plan.judge(&dataset, |row, drives| {
         if args.episodes.is_some() {
             records.extend(episodes::records(row, drives));
@@ -99,19 +99,16 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if let Some(file) = &args.episodes {
         file.write(&records)?;
     }
-    if let (Some(report), Some(path)) = (report, &args.report) {
+    if let (Some(mut report), Some(path)) = (report, &args.report) {
+        if args.shield != ShieldName::Off {
+            report.sweep(&dataset, args.contract.into());
+        }
         report.write(path)?;
     }
     args.print(&dataset, &rows)
 }
 
 impl Args {
-    /// What the user typed, for the report.
-    fn command() -> String {
-        let arguments: Vec<String> = std::env::args().skip(1).collect();
-        format!("cede {}", arguments.join(" "))
-    }
-
     fn plan(&self, dataset: &Dataset) -> Result<Plan, Failure> {
         Ok(Plan {
             contenders: self.driver.contenders(self.weights.as_deref())?,

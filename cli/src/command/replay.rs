@@ -1,17 +1,17 @@
 //! `cede replay`: one encounter of a recording, as numbers and as an animated page.
 
+mod numbers;
+
+use crate::drivers::{Contender, Drivers};
 use crate::failure::Failure;
-use crate::report::Report;
-use cede_sim::driver::Replay;
+use crate::judge::{ContractName, ShieldName};
+use crate::report::{Report, command};
+use cede_controller::Contract;
 use cede_sim::episode::Until;
 use cede_sim::evaluate::{Label, Mode, Protocol, Row, evaluate};
-use cede_sim::metrics::{recorded_states, svo_series};
-use cede_sim::{Dataset, Encounter, Role};
+use cede_sim::{Dataset, Encounter};
 use std::path::PathBuf;
 use std::str::FromStr;
-
-/// Rows of the table are so many steps (0.5 s) apart.
-const EVERY: usize = 5;
 
 /// Options of `cede replay`.
 #[derive(clap::Args)]
@@ -24,6 +24,18 @@ pub(crate) struct Args {
     /// Tracks of the left-turner and of the other; by default the two that came closest in time
     #[arg(long, value_name = "LEFT,OTHER")]
     pair: Option<Pair>,
+    /// Who drives both vehicles, separated by commas; those that learn do so from this recording
+    #[arg(long, default_value = "replay", value_name = "NAME[,NAME…]")]
+    driver: Drivers,
+    /// Whether both vehicles carry the shield
+    #[arg(long, value_enum, default_value_t = ShieldName::Off)]
+    shield: ShieldName,
+    /// What the shield assumes of the others
+    #[arg(long, value_enum, default_value_t = ContractName::WorstCase)]
+    contract: ContractName,
+    /// The policy of driver `cede`
+    #[arg(long, value_name = "FILE.cede")]
+    weights: Option<PathBuf>,
     /// Where the page goes
     #[arg(long, default_value = "out/replay.html", value_name = "FILE")]
     out: PathBuf,
@@ -54,34 +66,62 @@ impl FromStr for Pair {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let dataset = Dataset::load(&args.file, &args.site)?;
     let encounter = args.choose(&dataset)?;
-    print(encounter);
-    let protocol = Protocol {
-        mode: Mode::Joint,
-        until: Until::Cleared,
-        seed: 0,
-    };
-    let drives = evaluate(&Replay, &[encounter], protocol);
-    let label = Label {
-        driver: "replay",
-        split: "all",
-        mode: "joint",
-        until: "cleared",
-        shield: "off",
-    };
-    let id = &encounter.id;
-    let file = args.file.display();
-    let command = format!(
-        "cede replay {file} --site {} --pair {},{}",
-        args.site, id.left, id.other
-    );
-    let mut report = Report::showing(vec![encounter], &dataset, &command);
-    report.add(&Row::of(label, &drives), &drives);
+    numbers::record(encounter);
+    let mut report = Report::showing(vec![encounter], &dataset, &args.command(encounter));
+    let shields = args.shield.shields(args.contract.into());
+    for contender in args.driver.contenders(args.weights.as_deref())? {
+        for &shield in &shields {
+            drive(&contender, shield, encounter, &dataset, &mut report)?;
+        }
+    }
     report.write(&args.out)?;
     println!("\nAnimated in {}", args.out.display());
     Ok(())
 }
 
+/// Drives `encounter`, prints how it went, and adds it to `report`.
+fn drive(
+    contender: &Contender,
+    shield: Option<Contract>,
+    encounter: &Encounter,
+    dataset: &Dataset,
+    report: &mut Report,
+) -> Result<(), Failure> {
+    let training: Vec<&Encounter> = dataset.encounters.iter().collect();
+    let factory = contender.fit(&training, shield);
+    let factory = factory.map_err(|error| Failure::input(error, "name another driver"))?;
+    let protocol = Protocol {
+        mode: Mode::Joint,
+        until: Until::Cleared,
+        seed: 0,
+    };
+    let drives = evaluate(&*factory, &[encounter], protocol);
+    let label = Label {
+        driver: contender.name(),
+        split: "all",
+        mode: "joint",
+        until: "cleared",
+        shield: if shield.is_some() { "on" } else { "off" },
+    };
+    let row = Row::of(label, &drives);
+    for drive in &drives {
+        numbers::drive(&row, drive);
+    }
+    report.add(&row, &drives);
+    Ok(())
+}
+
 impl Args {
+    /// What shows the same encounter again.
+    fn command(&self, encounter: &Encounter) -> String {
+        let (left, other) = (encounter.id.left, encounter.id.other);
+        let pair = match self.pair {
+            Some(_) => String::new(),
+            None => format!(" --pair {left},{other}"),
+        };
+        command() + &pair
+    }
+
     fn choose<'d>(&self, dataset: &'d Dataset) -> Result<&'d Encounter, Failure> {
         let all = || dataset.encounters.iter();
         let chosen = match self.pair {
@@ -103,41 +143,5 @@ impl Args {
                 ),
             }
         })
-    }
-}
-
-fn print(encounter: &Encounter) {
-    let first = match encounter.first {
-        Role::Left => "left-turner",
-        Role::Other => "other",
-    };
-    println!(
-        "Left-turner {}, other {}: {first} first after {:.1} s, the next {:.1} s later.\n",
-        encounter.id.left,
-        encounter.id.other,
-        f64::from(encounter.steps) * 0.1,
-        encounter.pet
-    );
-    println!("            left-turner            other       SVO of the");
-    println!("  t, s   to go, m     m/s   to go, m     m/s   left-turner, °");
-    let mut orientations = svo_series(encounter, recorded_states(encounter));
-    for (step, states) in recorded_states(encounter).enumerate() {
-        let orientation = orientations.next();
-        if step % EVERY != 0 {
-            continue;
-        }
-        let [left, other] = Role::BOTH.map(|role| {
-            let state = states[role as usize];
-            (encounter.judged(role).conflict_s - state.s, state.v)
-        });
-        let degrees = orientation.map_or(String::new(), |phi| format!("{:.0}", phi.to_degrees()));
-        println!(
-            "{:>6.1}   {:>8.1}  {:>6.1}   {:>8.1}  {:>6.1}   {degrees:>14}",
-            step as f64 * 0.1,
-            left.0,
-            left.1,
-            other.0,
-            other.1
-        );
     }
 }

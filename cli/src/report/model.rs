@@ -1,5 +1,7 @@
 //! What the page draws, as it stands in the page's JSON.
 
+use super::sweep::Panel;
+use super::why::{Class, words};
 use crate::table::PAPER;
 use cede_controller::ConflictKind;
 use cede_sim::data::lanelet::{self, LineKind};
@@ -26,6 +28,7 @@ pub(super) struct Page {
     pub(super) cases: Vec<Case>,
     pub(super) distributions: Vec<Episodes>,
     pub(super) interventions: Vec<Interventions>,
+    pub(super) sweep: Vec<Panel>,
 }
 
 impl Page {
@@ -129,8 +132,8 @@ struct Driven {
     end: &'static str,
     #[serde(flatten)]
     motion: Motion,
-    /// The steps in which the shield overruled each vehicle's driver.
-    shielded: [Vec<usize>; 2],
+    /// The steps in which the shield overruled each vehicle's driver, and why.
+    shielded: [Vec<(usize, Class, String)>; 2],
 }
 
 #[derive(Serialize)]
@@ -172,8 +175,10 @@ impl Case {
         let overruled = |role: Role| {
             let steps = episode.actions.iter().enumerate();
             steps
-                .filter(|(_, a)| a[role as usize].shielded)
-                .map(|(i, _)| i)
+                .filter_map(|(i, both)| {
+                    let cause = both[role as usize].cause;
+                    Some((i, Class::of(cause)?, words(role, cause)))
+                })
                 .collect()
         };
         self.drives.push(Driven {
@@ -320,7 +325,10 @@ fn ascending(values: impl Iterator<Item = f64>) -> Vec<f64> {
 pub(super) struct Interventions {
     driver: String,
     block: String,
-    points: Vec<[f64; 2]>,
+    /// Where, and why.
+    points: Vec<([f64; 2], Class)>,
+    /// How often each class of reasons, the most frequent first.
+    classes: Vec<(Class, usize)>,
     overruled: usize,
     steps: usize,
 }
@@ -329,7 +337,8 @@ impl Interventions {
     /// `None` if the shield never acted.
     pub(super) fn of(driver: &str, row: &Row, drives: &[Drive<'_>]) -> Option<Self> {
         let mut points = Vec::new();
-        let (mut overruled, mut steps) = (0, 0);
+        let mut classes: Vec<(Class, usize)> = Vec::new();
+        let mut steps = 0;
         for drive in drives {
             let roles = drive.ego.map_or(Role::BOTH.to_vec(), |role| vec![role]);
             for (role, (actions, states)) in roles.into_iter().flat_map(|role| {
@@ -337,15 +346,20 @@ impl Interventions {
                 steps.map(move |step| (role, step))
             }) {
                 steps += 1;
-                if !actions[role as usize].shielded {
+                let Some(class) = Class::of(actions[role as usize].cause) else {
                     continue;
+                };
+                match classes.iter_mut().find(|(known, _)| *known == class) {
+                    Some((_, count)) => *count += 1,
+                    None => classes.push((class, 1)),
                 }
-                overruled += 1;
                 let route = &drive.encounter.judged(role).route;
                 let place = route.pose(states[role as usize].s).position;
-                points.push([place.x, place.y].map(|c| centi(f64::from(c))));
+                points.push(([place.x, place.y].map(|c| centi(f64::from(c))), class));
             }
         }
+        classes.sort_by_key(|&(_, count)| std::cmp::Reverse(count));
+        let overruled = points.len();
         // Evenly thinned, so that all files are seen.
         let every = overruled / MOST_DOTS + 1;
         let points = points.into_iter().step_by(every).collect();
@@ -353,6 +367,7 @@ impl Interventions {
             driver: driver.to_owned(),
             block: block(row),
             points,
+            classes,
             overruled,
             steps,
         })

@@ -2,7 +2,7 @@
 //!
 //! One vehicle (or every one) is driven by a careless proposer behind a [`Shield`];
 //! the others do their worst: random, bang-bang, or aimed at it. Commands come late, sensors err and
-//! black out, all within the contract. An overlap is then the shield's fault.
+//! black out, all within the contract. An overlap, as rapier2d sees it, is then the shield's fault.
 
 mod adversary;
 mod scenario;
@@ -13,10 +13,9 @@ use crate::driver::State;
 use crate::encounter::STEP;
 use crate::judge::Judge;
 use crate::kinematics::advance;
-use crate::overlap::OrientedBox;
 use adversary::Adversary;
 use cede_controller::shield::{Rules, Sound};
-use cede_controller::{Cause, Decision, Fault, Footprint, Observation, Pose, Shield, Vehicle};
+use cede_controller::{Cause, Decision, Fault, Footprint, Observation, Shield, Vehicle};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
@@ -59,68 +58,34 @@ impl Tally {
     }
 }
 
-/// Says whether vehicles touch: the simulator's own box test, or rapier2d ([`Judge`]).
-pub trait Referee {
-    /// Whether one of the first `egos` vehicles touches any other; called once a moment.
-    fn collision(&mut self, poses: &[Pose], egos: usize) -> bool;
-}
-
-/// The simulator's own box test.
-#[derive(Clone, Copy, Debug)]
-pub struct Boxes;
-
-impl Referee for Boxes {
-    fn collision(&mut self, poses: &[Pose], egos: usize) -> bool {
-        let covers = |&pose: &Pose| OrientedBox::new(pose, Footprint::PAPER);
-        let touches = |i: usize| {
-            let ego = covers(&poses[i]);
-            poses
-                .iter()
-                .skip(i + 1)
-                .any(|other| ego.overlaps(&covers(other)))
-        };
-        (0..egos).any(touches)
-    }
-}
-
-/// The judge must have been made for as many vehicles as there are, or more.
-impl Referee for Judge {
-    fn collision(&mut self, poses: &[Pose], egos: usize) -> bool {
-        let mut places = [None; OTHERS + 1];
-        for (place, &pose) in places.iter_mut().zip(poses) {
-            *place = Some(pose);
-        }
-        self.touching(&places).any(|(i, _)| i < egos)
-    }
-}
-
 /// Runs `scenarios` scenarios of `setup` with shields of rules `R`; scenario number i has seed `seed` + i.
 ///
-/// The same seed gives the same tally on any number of threads.
+/// rapier2d judges every step ([`Judge`]). The same seed gives the same tally on any number of threads.
 #[must_use]
 pub fn campaign<R: Rules>(setup: Setup, scenarios: u64, seed: u64) -> Tally {
-    (seed..seed.saturating_add(scenarios))
-        .into_par_iter()
-        .map(|seed| run::<R>(setup, seed, true, &mut Boxes))
-        .reduce(Tally::default, Tally::plus)
+    run_all::<R>(setup, scenarios, seed, true)
 }
 
 /// [`campaign`] with the shield switched off: the proposals pass as they are.
 #[must_use]
 pub fn unshielded(setup: Setup, scenarios: u64, seed: u64) -> Tally {
+    run_all::<Sound>(setup, scenarios, seed, false)
+}
+
+fn run_all<R: Rules>(setup: Setup, scenarios: u64, seed: u64, shielded: bool) -> Tally {
+    let judge = || Judge::new(&[Footprint::PAPER; OTHERS + 1]);
     (seed..seed.saturating_add(scenarios))
         .into_par_iter()
-        .map(|seed| run::<Sound>(setup, seed, false, &mut Boxes))
+        .map_init(judge, |judge, seed| run::<R>(setup, seed, shielded, judge))
         .reduce(Tally::default, Tally::plus)
 }
 
-/// One scenario, judged by `referee`.
-pub fn run<R: Rules>(setup: Setup, seed: u64, shielded: bool, referee: &mut impl Referee) -> Tally {
+fn run<R: Rules>(setup: Setup, seed: u64, shielded: bool, judge: &mut Judge) -> Tally {
     let mut rng = Pcg64::seed_from_u64(seed);
     let Some(scenario) = Scenario::random(setup, &mut rng) else {
         return Tally::default();
     };
-    World::<R>::new(scenario, rng).run(shielded, referee)
+    World::<R>::new(scenario, rng).run(shielded, judge)
 }
 
 /// What drives one vehicle.
@@ -191,7 +156,7 @@ impl<R: Rules> World<R> {
         }
     }
 
-    fn run(mut self, shielded: bool, referee: &mut impl Referee) -> Tally {
+    fn run(mut self, shielded: bool, judge: &mut Judge) -> Tally {
         let mut tally = Tally::default();
         for step in 0..self.scenario.setup.steps {
             for i in 0..self.minds.len() {
@@ -209,7 +174,7 @@ impl<R: Rules> World<R> {
                 }
             }
             self.advance();
-            if self.collision(referee) {
+            if self.collision(judge) {
                 tally.overlaps = 1;
                 break;
             }
@@ -296,20 +261,19 @@ impl<R: Rules> World<R> {
         }
     }
 
-    fn collision(&self, referee: &mut impl Referee) -> bool {
-        let poses: Vec<Pose> = self
-            .scenario
-            .vehicles
-            .iter()
-            .zip(&self.states)
-            .map(|(vehicle, state)| vehicle.route.pose(state.s))
-            .collect();
+    /// Whether a shielded vehicle touches any other.
+    fn collision(&self, judge: &mut Judge) -> bool {
+        let mut poses = [None; OTHERS + 1];
+        let vehicles = self.scenario.vehicles.iter().zip(&self.states);
+        for (pose, (vehicle, state)) in poses.iter_mut().zip(vehicles) {
+            *pose = Some(vehicle.route.pose(state.s));
+        }
         let egos = if self.scenario.setup.everyone {
             poses.len()
         } else {
             1
         };
-        referee.collision(&poses, egos)
+        judge.touching(&poses).any(|(i, _)| i < egos)
     }
 
     /// Whether every shielded vehicle has passed the zones in which routes cross.

@@ -105,9 +105,8 @@ impl Driver for Seat {
         self.last.map_or(0.0, |decision| decision.acceleration)
     }
 
-    fn shielded(&self) -> bool {
-        self.last
-            .is_some_and(|decision| decision.cause != Cause::Policy)
+    fn cause(&self) -> Cause {
+        self.last.map_or(Cause::Policy, |decision| decision.cause)
     }
 }
 

@@ -33,7 +33,7 @@ impl DriverFactory for Shielded {
                 driver,
                 shield,
                 scene,
-                overruled: false,
+                cause: Cause::Policy,
             }),
             // The contract was checked; with nobody to meet there is nothing to shield from.
             _ => driver,
@@ -45,22 +45,23 @@ struct Behind {
     driver: Box<dyn Driver>,
     shield: Shield<1>,
     scene: Scene<1>,
-    overruled: bool,
+    cause: Cause,
 }
 
 impl Driver for Behind {
     fn accelerate(&mut self, view: &View<'_>) -> f32 {
         let wanted = self.driver.accelerate(view);
         let Some(seen) = observe(view) else {
+            self.cause = Cause::Policy;
             return wanted;
         };
         let decision = self.shield.filter(&self.scene, &seen, wanted);
-        self.overruled = decision.cause != Cause::Policy;
+        self.cause = decision.cause;
         decision.acceleration
     }
 
-    fn shielded(&self) -> bool {
-        self.overruled
+    fn cause(&self) -> Cause {
+        self.cause
     }
 }
 

@@ -8,7 +8,7 @@ use clap::Args;
 /// Scenarios of one set-up that are run before the next.
 const BATCH: u64 = 500;
 
-/// Drives shielded vehicles among adversaries; exit code 1 if one of them touches anybody.
+/// Drives shielded vehicles among adversaries, judged by rapier2d; exit code 1 if one of them touches anybody.
 #[derive(Args)]
 pub(crate) struct Campaign {
     /// Steps of shielded vehicles to run, at least.

@@ -1,6 +1,7 @@
 //! `cede verify shield`: what the shield would have allowed recorded drivers.
 
 use crate::failure::Failure;
+use crate::report::{Report, command};
 use cede_controller::{ConflictKind, Contract};
 use cede_sim::transparency::{Swept, Transparency, sweep, transparency};
 use cede_sim::{Dataset, Encounter};
@@ -19,8 +20,11 @@ pub(crate) struct Shield {
     #[arg(long, default_value = "EP0")]
     site: String,
     /// Writes the shares for other accelerations and ego brakings to this CSV file.
-    #[arg(long)]
+    #[arg(long, value_name = "FILE")]
     sweep: Option<PathBuf>,
+    /// Draws the same on a page: one HTML file.
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
 }
 
 impl Shield {
@@ -49,16 +53,27 @@ impl Shield {
             let rows = sweep(&encounters, Contract::WORST_CASE).unwrap_or_default();
             cede_sim::output::write(file, |out| csv(out, &rows))?;
         }
+        if let Some(file) = &self.report {
+            let mut report = Report::showing(Vec::new(), &data, &command());
+            report.sweep(&data, Contract::WORST_CASE);
+            report.write(file)?;
+        }
         judge(&worst)
     }
 }
 
 fn csv(out: &mut dyn Write, rows: &[Swept]) -> io::Result<()> {
-    writeln!(out, "other_acceleration,ego_braking,kind,steps,accepted")?;
+    writeln!(
+        out,
+        "other_acceleration,ego_braking,kind,role,steps,accepted"
+    )?;
     for row in rows {
-        let kind = format!("{:?}", row.kind).to_lowercase();
+        let counted = row.counted;
+        let kind = format!("{:?}", counted.kind).to_lowercase();
+        let role = format!("{:?}", counted.role).to_lowercase();
         let (a, b) = (row.acceleration, row.braking);
-        writeln!(out, "{a},{b},{kind},{},{}", row.steps, row.accepted)?;
+        let (steps, accepted) = (counted.steps, counted.accepted);
+        writeln!(out, "{a},{b},{kind},{role},{steps},{accepted}")?;
     }
     Ok(())
 }

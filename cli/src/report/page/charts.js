@@ -23,8 +23,8 @@ function ticks(low, high, about) {
   });
 }
 
-// series: [{ points: [[x, y], …], colour, width, dash }]; marks: [{ y, label }].
-function lineChart(host, { series, x, y, marks = [], height = 220 }) {
+// series: [{ points: [[x, y], …], colour, width, dash }]; marks: [{ y, label }]; dots: [{ at: [x, y], colour, title }].
+function lineChart(host, { series, x, y, marks = [], dots = [], height = 220 }) {
   const width = 520, left = 46, right = 10, top = 24, bottom = 36;
   const finite = series.flatMap((s) => s.points);
   const range = (axis, i) => {
@@ -60,6 +60,10 @@ function lineChart(host, { series, x, y, marks = [], height = 220 }) {
     const path = s.points.map((p, i) => `${i ? "L" : "M"}${px(p[0]).toFixed(1)} ${py(p[1]).toFixed(1)}`).join("");
     node("path", { d: path, style: `stroke:${s.colour}`, "stroke-width": s.width ?? 1.5, "stroke-dasharray": s.dash ?? "none", "stroke-opacity": s.opacity ?? 1 }, svg);
   }
+  for (const dot of dots) {
+    const circle = node("circle", { cx: px(dot.at[0]).toFixed(1), cy: py(dot.at[1]).toFixed(1), r: 3.2, style: `fill:${dot.colour}` }, svg);
+    node("title", {}, circle, dot.title);
+  }
   const cursor = node("line", { class: "cursor", y1: top, y2: height - bottom, visibility: "hidden" }, svg);
   return {
     at(value) {
@@ -83,11 +87,12 @@ function cumulative(values, total, limit) {
 }
 
 function legend(host, entries) {
-  host.replaceChildren(...entries.map(({ name, colour, dash, chosen }) => {
+  host.replaceChildren(...entries.map(({ name, colour, dash, dot, chosen }) => {
     const span = document.createElement("span");
     const line = document.createElement("i");
-    line.style.borderTopColor = colour;
+    line.style.borderColor = colour;
     if (dash) line.className = "dashed";
+    if (dot) line.className = "dot";
     if (chosen) span.className = "chosen";
     span.append(line, name);
     return span;

@@ -11,10 +11,12 @@ const report = JSON.parse(document.getElementById("data").textContent);
 
 document.getElementById("subtitle").textContent = report.subtitle;
 document.getElementById("provenance").textContent = report.provenance;
-tables(document.getElementById("tables"), report);
+if (report.rows.length) tables(document.getElementById("tables"), report);
 if (report.cases.length) player(report);
 if (report.distributions.length) distributions(report);
 if (report.interventions.length) interventions(report);
+if (report.sweep.length) sweep(report);
+for (const id of ["results", "words"]) document.getElementById(id).hidden = report.rows.length === 0;
 document.documentElement.dataset.status = "ready";
 
 function distributions({ distributions, drivers }) {
@@ -53,14 +55,18 @@ function interventions({ interventions, map }) {
   find("shielded").append(...interventions.map((d, i) => new Option(`${d.driver} (${d.block})`, i)));
   find("shield").hidden = false;
   const draw = () => {
-    const { points, steps, overruled } = interventions[find("shielded").value];
-    const bounds = (pick) => [0, 1].map((i) => pick(...points.map((p) => p[i])));
+    const { points, classes, steps, overruled } = interventions[find("shielded").value];
+    const bounds = (pick) => [0, 1].map((i) => pick(...points.map(([p]) => p[i])));
     const view = new View(find("interventions"), bounds(Math.min).map((c) => c - 15), bounds(Math.max).map((c) => c + 15));
     view.clear();
     view.map(map);
-    for (const point of points) view.dot(point, 2.5, css("--stop"));
+    const tints = new Map(Object.entries(REASONS).map(([name, { tint }]) => [name, css(tint)]));
+    for (const [point, reason] of points) view.dot(point, 2.5, tints.get(reason));
     const share = ((100 * overruled) / steps).toFixed(2);
-    find("causes").textContent = `${overruled} of ${steps} steps (${share} %) were overruled.`;
+    find("share").textContent = `${overruled} of ${steps} steps (${share} %) were overruled.`;
+    legend(find("causes"), classes.map(([name, count]) => ({
+      name: `${REASONS[name].words}: ${count} steps`, colour: `var(${REASONS[name].tint})`, dot: true,
+    })));
   };
   find("shielded").onchange = draw;
   draw();

@@ -4,6 +4,15 @@ const STEP = 0.1;
 const PALETTE = ["#2563eb", "#d97706", "#059669", "#db2777", "#7c3aed", "#0891b2", "#65a30d", "#a16207", "#64748b", "#dc2626"];
 const PAPER_SIZE = [5, 2];
 
+// Why the shield acts.
+const REASONS = {
+  arrival: { words: "the other may arrive before the zone is cleared", tint: "--arrival" },
+  occupied: { words: "the other is in the zone", tint: "--occupied" },
+  entry: { words: "no safe gap ahead of the other in its lane", tint: "--entry" },
+  stop: { words: "just room to stop", tint: "--halt" },
+  fallback: { words: "nothing was safe", tint: "--ink" },
+};
+
 function colours(names) {
   return new Map(names.map((name, i) => [name, PALETTE[i % PALETTE.length]]));
 }
@@ -196,6 +205,11 @@ function player(report) {
     };
     const stage = (i) => ({
       series: lines((d) => until(d.s[i].map((s) => s - item.vehicles[i].conflict_s), 30)),
+      dots: drive.shielded[i].filter(([k]) => drive.s[i][k] - item.vehicles[i].conflict_s <= 30).map(([k, reason, words]) => ({
+        at: [k * STEP, drive.s[i][k] - item.vehicles[i].conflict_s],
+        colour: `var(${REASONS[reason].tint})`,
+        title: `${(k * STEP).toFixed(1)} s: ${words}`,
+      })),
       x: time, y: { label: "m" }, height: 228, marks: [{ y: 0, label: "conflict point" }],
     });
     const degrees = [0, 45, 90].map((value) => ({ value, label: `${value}°` }));
@@ -213,10 +227,13 @@ function player(report) {
         x: time, y: { label: "m/s", low: 0 },
       }),
     ];
+    const acted = new Set(drive.shielded.flat().map(([, reason]) => reason));
     legend(find("chart-legend"), [
       { name: "recorded", colour: "var(--ink)", dash: true },
       ...item.drives.map((d) => ({ name: d.driver, colour: palette.get(d.driver), chosen: d === drive })),
+      ...Object.keys(REASONS).filter((name) => acted.has(name)).map((name) => ({ name: `shield: ${REASONS[name].words}`, colour: `var(${REASONS[name].tint})`, dot: true })),
     ]);
+    find("why").hidden = acted.size === 0;
   }
 
   function draw() {
@@ -234,12 +251,27 @@ function player(report) {
     item.vehicles.forEach((v, i) => {
       view.vehicle(pose(v.route, sample(item.record.s[i], t)), PAPER_SIZE, { stroke: roles[i], dash: [3, 3] });
       const now = pose(v.route, sample(drive.s[i], t));
-      const overruled = drive.shielded[i].includes(Math.floor(t / STEP));
-      view.vehicle(now, PAPER_SIZE, { fill: roles[i], stroke: overruled ? css("--stop") : undefined });
-      if (overruled) view.dot([now.x, now.y], 4, css("--stop"), css("--panel"));
+      const overruled = acts(i, t);
+      const tint = overruled && css(REASONS[overruled[1]].tint);
+      view.vehicle(now, PAPER_SIZE, { fill: roles[i], stroke: tint });
+      if (overruled) view.dot([now.x, now.y], 4, tint, css("--panel"));
     });
+    find("why").textContent = why(t);
     clock.textContent = `${t.toFixed(1)} / ${horizon.toFixed(1)} s`;
     for (const chart of charts) chart.at(t);
+  }
+
+  // What the shield of vehicle i does at a time, if it acts.
+  function acts(i, t) {
+    const step = Math.floor(t / STEP + 1e-6);
+    return drive.shielded[i].find(([k]) => k === step);
+  }
+  function why(t) {
+    const told = ["Left-turner", "Other"].flatMap((name, i) => {
+      const acted = acts(i, t);
+      return acted ? [`${name} ${acted[2]}.`] : [];
+    });
+    return told.join(" ") || "The shield lets both drive as they like.";
   }
 
   function frame(now) {
