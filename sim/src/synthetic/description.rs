@@ -2,7 +2,6 @@
 
 use super::layout::{CENTRE, Layout, Movement};
 use super::plan::{files_of, in_test, in_validation};
-use super::zone::Meeting;
 use crate::data::Site;
 use crate::encounter::Manoeuvre;
 use std::fmt::Write;
@@ -11,29 +10,7 @@ use std::path::Path;
 /// Names of the arms, in the layout's order.
 pub(super) const ARMS: [&str; 4] = ["E", "N", "W", "S"];
 
-/// Two ways across that the site's encounters are made of.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Conflict {
-    /// The movement that has to give way, as an index in [`Layout::movements`].
-    pub(super) yielding: usize,
-    /// The one that it meets.
-    pub(super) other: usize,
-    /// As the description calls it.
-    pub(super) kind: &'static str,
-}
-
 impl Layout {
-    /// How two different movements conflict, if they do.
-    pub(super) fn conflict_kind(&self, a: usize, b: usize) -> Option<&'static str> {
-        let (own, other) = (&self.movements[a], &self.movements[b]);
-        match self.meetings[a][b] {
-            Meeting::Conflict(_) if own.to == other.to => Some("merging"),
-            Meeting::Conflict(_) => Some("crossing"),
-            Meeting::Parting(_) => Some("following"),
-            Meeting::Never => None,
-        }
-    }
-
     /// The site as the extraction knows it.
     pub(super) fn site(&self) -> Site {
         // The description is ours and its tests read it; headings would serve if it were wrong.

@@ -1,25 +1,13 @@
 //! The lie of the land: arms, lanes, stop lines and the ways across.
 
-use super::description::Conflict;
 use super::human::Right;
-use super::plan::{Class, Purpose, class_of, name_of, stream};
+use super::plan::{Class, Control, Purpose, class_of, name_of, stream};
 use super::profile::SpeedProfile;
-use super::zone::{Meeting, meeting};
+use super::zone::{Meeting, parting, zone};
 use crate::encounter::{Manoeuvre, SimRoute};
-use cede_controller::{Footprint, Point};
+use cede_controller::Point;
 use rand::RngExt;
 use rand_pcg::Pcg64;
-
-/// Who has to stop or to give way.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Control {
-    /// Everybody stops; who came first goes first.
-    AllWayStop,
-    /// The minor road stops and waits for a gap in the major one.
-    TwoWayStop,
-    /// Nobody has to stop; who comes from the right goes first.
-    Uncontrolled,
-}
 
 /// A road that leads to the intersection: one lane in, one lane out.
 #[derive(Clone, Debug)]
@@ -56,6 +44,17 @@ pub(super) struct Movement {
     pub(super) demand: f32,
 }
 
+/// Two ways across that the site's encounters are made of.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Conflict {
+    /// The movement that has to give way, as an index in [`Layout::movements`].
+    pub(super) yielding: usize,
+    /// The one that it meets.
+    pub(super) other: usize,
+    /// As the description calls it.
+    pub(super) kind: &'static str,
+}
+
 /// An intersection with its rules.
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
@@ -90,6 +89,16 @@ impl Arm {
     }
 }
 
+impl Movement {
+    fn meets(&self, other: &Self) -> Meeting {
+        if self.from == other.from {
+            return Meeting::Parting(parting(&self.route, &other.route));
+        }
+        let merging = self.to == other.to;
+        zone(&self.route, &other.route, merging).map_or(Meeting::Never, Meeting::Conflict)
+    }
+}
+
 impl Layout {
     /// Site `number`, with measures drawn for its class.
     pub(super) fn draw(number: u16, seed: u64) -> Self {
@@ -105,7 +114,7 @@ impl Layout {
         }
         let meetings = movements
             .iter()
-            .map(|a| movements.iter().map(|b| meeting(a, b)).collect())
+            .map(|a| movements.iter().map(|b| a.meets(b)).collect())
             .collect();
         let mut layout = Self {
             number,
@@ -118,6 +127,17 @@ impl Layout {
         };
         layout.conflicts = layout.draw_conflicts(rng);
         layout
+    }
+
+    /// How two different movements conflict, if they do.
+    fn conflict_kind(&self, a: usize, b: usize) -> Option<&'static str> {
+        let (own, other) = (&self.movements[a], &self.movements[b]);
+        match self.meetings[a][b] {
+            Meeting::Conflict(_) if own.to == other.to => Some("merging"),
+            Meeting::Conflict(_) => Some("crossing"),
+            Meeting::Parting(_) => Some("following"),
+            Meeting::Never => None,
+        }
     }
 
     /// Left-turners against oncoming traffic, as at the recorded sites, and some of all other pairs.
@@ -259,9 +279,3 @@ pub(super) fn curve(a: Point, u: Point, b: Point, w: Point) -> impl Iterator<Ite
         a * (r * r * r) + c * (3.0 * r * r * t) + d * (3.0 * r * t * t) + b * (t * t * t)
     })
 }
-
-/// The vehicle for which zones are laid out: a car with some room about it.
-pub(super) const ROOMY: Footprint = Footprint {
-    length: 5.4,
-    width: 2.6,
-};

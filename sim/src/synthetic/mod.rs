@@ -20,8 +20,8 @@ pub use files::{WrittenSite, write};
 
 use crate::data::{Dataset, Files, Recording, Site, extract};
 use crate::encounter::Encounter;
-use layout::{Control, Layout};
-use plan::{Purpose, in_test, in_validation, site_of, stream};
+use layout::Layout;
+use plan::{Control, Purpose, in_test, in_validation, site_of, stream};
 use rand::RngExt;
 use rayon::prelude::*;
 use traffic::Traffic;

@@ -1,7 +1,17 @@
 //! Which sites there are, which recordings each has, and what they serve for.
 
-use super::layout::Control;
 use rand_pcg::Pcg64;
+
+/// Who has to stop or to give way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Control {
+    /// Everybody stops; who came first goes first.
+    AllWayStop,
+    /// The minor road stops and waits for a gap in the major one.
+    TwoWayStop,
+    /// Nobody has to stop; who comes from the right goes first.
+    Uncontrolled,
+}
 
 /// The class of a site.
 #[derive(Clone, Copy)]

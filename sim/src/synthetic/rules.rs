@@ -1,7 +1,8 @@
 //! Who has to stop, and who has to give way to whom.
 
 use super::human::Right;
-use super::layout::{Arm, Control, Layout, Movement};
+use super::layout::{Arm, Layout, Movement};
+use super::plan::Control;
 use crate::encounter::Manoeuvre;
 
 impl Layout {

@@ -1,8 +1,8 @@
 //! Where two ways across get into each other's way.
 
-use super::layout::{Movement, ROOMY};
 use crate::encounter::SimRoute;
 use crate::overlap::OrientedBox;
+use cede_controller::Footprint;
 
 /// How one movement meets another.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,21 +24,18 @@ pub(crate) struct Zone {
     pub(crate) other: (f32, f32),
 }
 
+/// The vehicle for which zones are laid out: a car with some room about it.
+const ROOMY: Footprint = Footprint {
+    length: 5.4,
+    width: 2.6,
+};
 /// Routes closer than this (m) count as one lane.
 const ONE_LANE: f32 = 0.8;
 /// Distance (m) between samples along the routes.
 const SPACING: f32 = 0.5;
 
-pub(super) fn meeting(own: &Movement, other: &Movement) -> Meeting {
-    if own.from == other.from {
-        return Meeting::Parting(parting(&own.route, &other.route));
-    }
-    let merging = own.to == other.to;
-    zone(&own.route, &other.route, merging).map_or(Meeting::Never, Meeting::Conflict)
-}
-
 /// Arc length (m) up to which two routes from one start lie side by side.
-fn parting(own: &SimRoute, other: &SimRoute) -> f32 {
+pub(super) fn parting(own: &SimRoute, other: &SimRoute) -> f32 {
     let aside = |s: f32| own.pose(s).position.distance(other.pose(s).position);
     let parted = samples(own.length()).find(|&s| aside(s) > ROOMY.width);
     parted.unwrap_or(own.length())
