@@ -331,7 +331,7 @@ mod tests {
             + &property("SR-2", "{ acceleration_at_least = -2 }")
             + &property(
                 "SR-3",
-                "{ rises_at_least = { with = \"other_distance\", slope = 0.1 } }",
+                "{ rises_at_least = { with = \"other_distance\", slope = 0 } }",
             )
             + &property(
                 "SR-4",

@@ -6,8 +6,10 @@
 //!
 //! **What a proof is about**: the acceleration that the controller computes in `f32`. It is found
 //! for real numbers, with a stated margin for the `f32` rounding of features and network; a
-//! refutation is a state at which the controller itself was run.
+//! refutation is a state at which the controller itself was run. A slope is one of the exact
+//! function; what the controller computes differs from that by no more than the stated rounding.
 
+mod check;
 mod features;
 mod gradient;
 mod interval;
@@ -18,6 +20,7 @@ pub use search::{Finding, Settled};
 use crate::network::{Activation, Feature, InputBox, Layer, Matrix, Network};
 use cede_controller::{FeatureSet, Perspective, Weights};
 use cede_sim::property::Setting;
+use features::Enclosed;
 
 /// A policy as the verifier sees it: the network that gives the ego's mean, and its features.
 pub struct Subject<'a> {
@@ -85,12 +88,14 @@ impl<'a> Subject<'a> {
         self.weights.perspective
     }
 
+    /// The linear functions and radii of the features on a box of states.
+    fn front(&self, region: &InputBox, setting: &Setting) -> Vec<Feature> {
+        let enclosed = self.features(region, setting);
+        enclosed.into_iter().map(|e| e.feature).collect()
+    }
+
     /// The enclosed features on a box of states.
-    fn features(
-        &self,
-        region: &InputBox,
-        setting: &Setting,
-    ) -> Vec<(Feature, [interval::Interval; interval::STATE])> {
+    fn features(&self, region: &InputBox, setting: &Setting) -> Vec<Enclosed> {
         // The feature set was checked when the subject was made.
         features::enclose(self.weights.features, &self.normalisation, region, setting)
             .unwrap_or_default()

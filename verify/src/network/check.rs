@@ -304,18 +304,18 @@ impl Form {
 
 /// A box and bounds of all pre-activations, layer by layer.
 #[derive(Clone)]
-struct Bounds<'a> {
-    region: InputBox,
+pub(crate) struct Bounds<'a> {
+    pub(crate) region: InputBox,
     front: Option<Front<'a>>,
     /// What the front gives on the region.
     features: Vec<Feature>,
-    layers: Vec<Vec<(f64, f64)>>,
+    pub(crate) layers: Vec<Vec<(f64, f64)>>,
     /// Which bounds are assumptions about a ReLU's phase, and stay.
     first: Vec<Option<usize>>,
 }
 
 impl<'a> Bounds<'a> {
-    fn new(network: &Network, front: Option<Front<'a>>, region: InputBox) -> Self {
+    pub(crate) fn new(network: &Network, front: Option<Front<'a>>, region: InputBox) -> Self {
         let mut count = 0;
         let first = network.layers().iter().map(|layer| {
             let start = (layer.activation != Activation::Identity).then_some(count);
@@ -351,7 +351,7 @@ impl<'a> Bounds<'a> {
     }
 
     /// Tightens all bounds to the box; false if they contradict each other.
-    fn tighten(&mut self, network: &Network) -> bool {
+    pub(crate) fn tighten(&mut self, network: &Network) -> bool {
         self.features = self
             .front
             .map_or_else(Vec::new, |front| front(&self.region));

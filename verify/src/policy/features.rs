@@ -80,14 +80,24 @@ fn features(set: FeatureSet, state: [Dual; STATE], setting: &Setting) -> Option<
     Some(all)
 }
 
-/// The normalised features on a box of states, each a linear function and a radius, and the
-/// ranges of their derivatives. `None` for a feature set that is not a function of the state.
+/// A normalised feature on a box of states.
+pub(super) struct Enclosed {
+    /// A linear function and a radius; the radius covers the `f32` computation.
+    pub(super) feature: Feature,
+    /// The ranges of its derivatives.
+    pub(super) slopes: [Interval; STATE],
+    /// How far the `f32` computation can be from the exact one.
+    pub(super) rounding: f64,
+}
+
+/// The normalised features on a box of states. `None` for a feature set that is not a function of
+/// the state.
 pub(super) fn enclose(
     set: FeatureSet,
     normalisation: &[(f64, f64)],
     region: &InputBox,
     setting: &Setting,
-) -> Option<Vec<(Feature, [Interval; STATE])>> {
+) -> Option<Vec<Enclosed>> {
     let sides: [Interval; STATE] = std::array::from_fn(|i| Interval {
         lo: region.lower[i],
         hi: region.upper[i],
@@ -121,7 +131,11 @@ pub(super) fn enclose(
                         slopes: vec![0.0; STATE],
                         radius: all.value.radius() + rounding,
                     };
-                    return (flat, all.slopes);
+                    return Enclosed {
+                        feature: flat,
+                        slopes: all.slopes,
+                        rounding,
+                    };
                 }
                 let slopes = all.slopes.map(Interval::middle);
                 let mut constant = at.value;
@@ -138,7 +152,11 @@ pub(super) fn enclose(
                     slopes: slopes.to_vec(),
                     radius: radius * (1.0 + 1e-12),
                 };
-                (feature, all.slopes)
+                Enclosed {
+                    feature,
+                    slopes: all.slopes,
+                    rounding,
+                }
             });
     Some(each.collect())
 }

@@ -1,7 +1,9 @@
 //! Branch and bound over boxes of states.
 
 use super::Subject;
+use super::check::slopes_hold;
 use super::gradient::gradient;
+use super::interval::Interval;
 use crate::network::{
     Bounder, Feature, Halfspace, InputBox, Network, check,
     proof::{Cell, Proof, Split},
@@ -36,9 +38,11 @@ pub struct Settled {
     pub finding: Finding,
     /// Regions that were bounded.
     pub regions: u64,
-    /// Regions that the independent checker confirmed: 0 if it was not asked, or the claim is one
-    /// about slopes, for which there is no independent check.
+    /// Regions that the independent checker confirmed: 0 if it was not asked.
     pub checked: usize,
+    /// For a claim about slopes: by how much (m/s²) a difference of two accelerations that the
+    /// controller computes in `f32` may be off the exact one. Other proofs have it deducted.
+    pub rounding: f64,
 }
 
 /// Largest acceleration of any policy: 3·tanh.
@@ -66,8 +70,8 @@ enum Step {
 }
 
 impl Subject<'_> {
-    /// Settles a property; with `checked`, the independent checker goes over every proof of an
-    /// acceleration claim, and a proof that it refuses counts as unsettled.
+    /// Settles a property; with `checked`, the independent checker goes over every proof, and one
+    /// that it refuses counts as unsettled.
     ///
     /// The same on any number of threads, as long as the time suffices.
     #[must_use]
@@ -76,6 +80,7 @@ impl Subject<'_> {
             finding: Finding::Proved,
             regions: 0,
             checked: 0,
+            rounding: 0.0,
         };
         for setting in property.settings() {
             let task = Task::new(self, property, setting);
@@ -84,8 +89,9 @@ impl Subject<'_> {
             if settled.finding != Finding::Proved {
                 break;
             }
-            if checked && let Some(atom) = &task.atom {
-                match task.check(atom, &proof) {
+            settled.rounding = settled.rounding.max(task.rounding);
+            if checked {
+                match task.check(&proof) {
                     Ok(regions) => settled.checked += regions,
                     Err(_) => settled.finding = Finding::Unsettled,
                 }
@@ -129,6 +135,8 @@ struct Task<'a> {
     setting: Setting,
     /// The unsafe side of an acceleration claim, `f32` margin included.
     atom: Option<Halfspace>,
+    /// See [`Settled::rounding`].
+    rounding: f64,
     bounder: Bounder,
     root: Box<[(f64, f64)]>,
 }
@@ -136,23 +144,29 @@ struct Task<'a> {
 impl<'a> Task<'a> {
     fn new(subject: &'a Subject<'a>, property: &'a StateProperty, setting: Setting) -> Self {
         let region = region(property);
-        let features: Vec<Feature> = subject
-            .features(&region, &setting)
-            .into_iter()
-            .map(|f| f.0)
-            .collect();
+        let enclosed = subject.features(&region, &setting);
+        let roundings: Vec<f64> = enclosed.iter().map(|e| e.rounding).collect();
+        let features: Vec<Feature> = enclosed.into_iter().map(|e| e.feature).collect();
         let mut root = Bounder::new(&subject.network, None).unbounded();
         Bounder::new(&subject.network, None)
             .worker()
             .tighten(&region, &features, &mut root);
-        let margin = single_precision_margin(&subject.network, &features, &region, &root);
-        let atom = unsafe_side(property.claim, margin);
+        let margin = |inputs: Vec<f64>| {
+            single_precision_margin(&subject.network, &features, &region, &root, inputs)
+        };
+        // The features' own rounding is in their radii already, but not in their slopes.
+        let atom = unsafe_side(property.claim, margin(vec![0.0; features.len()]));
+        let rounding = match atom {
+            Some(_) => 0.0,
+            None => 2.0 * MOST * (margin(roundings) + TANH),
+        };
         let bounder = Bounder::new(&subject.network, atom.as_ref());
         Self {
             subject,
             property,
             setting,
             atom,
+            rounding,
             bounder,
             root,
         }
@@ -212,7 +226,7 @@ impl<'a> Task<'a> {
 
     fn step(&self, worker: &mut crate::network::Worker<'_>, mut node: Node) -> Step {
         let enclosed = self.subject.features(&node.region, &self.setting);
-        let features: Vec<Feature> = enclosed.iter().map(|f| f.0.clone()).collect();
+        let features: Vec<Feature> = enclosed.iter().map(|e| e.feature.clone()).collect();
         worker.tighten(&node.region, &features, &mut node.bounds);
         let mut scores = vec![0.0; node.region.lower.len()];
         let mut candidates = vec![middle(&node.region)];
@@ -225,9 +239,9 @@ impl<'a> Task<'a> {
             }
             candidates.push(worker.minimiser(&mut scores));
         } else {
-            let slopes: Vec<_> = enclosed.iter().map(|f| f.1).collect();
+            let slopes: Vec<_> = enclosed.iter().map(|e| e.slopes).collect();
             let all = gradient(&self.subject.network, &node.bounds, &slopes);
-            if self.slope_holds(all) {
+            if slope_holds(self.property.claim, all) {
                 return Step::Proved(Cell::default());
             }
             worker.widths(&mut scores);
@@ -243,21 +257,6 @@ impl<'a> Task<'a> {
         match halve(&node, &scores) {
             Some((split, halves)) => Step::Split(split, halves),
             None => Step::Stuck,
-        }
-    }
-
-    /// Whether the range of the gradient of the mean settles a claim about slopes. The slope of
-    /// the acceleration is that of the mean times 3·tanh′, which lies in (0, 3].
-    fn slope_holds(&self, mean: [super::interval::Interval; 4]) -> bool {
-        let scaled = |slope: f64| (MOST * slope).max(0.0);
-        match self.property.claim {
-            Claim::RisesAtLeast { with, slope } => {
-                let least = mean[with.index()].lo;
-                // Nothing is known of the smallest tanh′, so a positive slope is never proved.
-                slope <= 0.0 && -scaled(-least) >= slope
-            }
-            Claim::ChangesAtMost { with, slope } => scaled(mean[with.index()].magnitude()) <= slope,
-            Claim::AccelerationAtMost(_) | Claim::AccelerationAtLeast(_) => false,
         }
     }
 
@@ -289,19 +288,33 @@ impl<'a> Task<'a> {
         f64::from(Policy::from(self.subject.weights).act(&self.setting.pair(state))[0])
     }
 
-    fn check(&self, atom: &Halfspace, proof: &Proof) -> Result<usize, check::CheckError> {
+    fn check(&self, proof: &Proof) -> Result<usize, check::CheckError> {
+        let region = region(self.property);
+        let Some(atom) = &self.atom else {
+            let holds = |slopes| slope_holds(self.property.claim, slopes);
+            return slopes_hold(self.subject, &self.setting, region, holds, proof);
+        };
         let query = crate::network::Query {
-            region: region(self.property),
+            region,
             unsafe_set: vec![vec![atom.clone()]],
         };
-        let front = |region: &InputBox| {
-            self.subject
-                .features(region, &self.setting)
-                .into_iter()
-                .map(|f| f.0)
-                .collect()
-        };
+        let front = |region: &InputBox| self.subject.front(region, &self.setting);
         check::check_behind(&self.subject.network, Some(&front), &query, proof)
+    }
+}
+
+/// Whether the range of the gradient of the mean settles a claim about slopes. The slope of
+/// the acceleration is that of the mean times 3·tanh′, which lies in (0, 3].
+pub(super) fn slope_holds(claim: Claim, mean: [Interval; 4]) -> bool {
+    let scaled = |slope: f64| (MOST * slope).max(0.0);
+    match claim {
+        Claim::RisesAtLeast { with, slope } => {
+            let least = mean[with.index()].lo;
+            // Nothing is known of the smallest tanh′, so a positive slope is never proved.
+            slope <= 0.0 && -scaled(-least) >= slope
+        }
+        Claim::ChangesAtMost { with, slope } => scaled(mean[with.index()].magnitude()) <= slope,
+        Claim::AccelerationAtMost(_) | Claim::AccelerationAtLeast(_) => false,
     }
 }
 
@@ -338,15 +351,15 @@ fn unsafe_side(claim: Claim, margin: f64) -> Option<Halfspace> {
 }
 
 /// How far the controller's `f32` mean can be from the exact one anywhere on the region, its
-/// inputs given: the usual bound for sums of products in any order, carried through the layers.
+/// inputs with their `errors` given: the usual bound for sums of products in any order, carried through the layers.
 fn single_precision_margin(
     network: &Network,
     features: &[Feature],
     region: &InputBox,
     bounds: &[(f64, f64)],
+    mut errors: Vec<f64>,
 ) -> f64 {
     let mut sizes: Vec<f64> = features.iter().map(|f| f.magnitude(region)).collect();
-    let mut errors = vec![0.0; sizes.len()];
     let mut first = 0;
     for layer in network.layers() {
         let unit = (layer.inputs() + 4) as f64 * f64::from(f32::EPSILON) * 0.5 * 1.001;

@@ -192,7 +192,8 @@ proptest! {
                 single(region.lower[i] + share[i] * (region.upper[i] - region.lower[i])).clamp(region.lower[i], region.upper[i])
             });
             let inputs = Policy::from(weights).inputs(&setting.pair(state));
-            for (k, ((feature, _), input)) in features.iter().zip(inputs).enumerate() {
+            for (k, (enclosed, input)) in features.iter().zip(inputs).enumerate() {
+                let feature = &enclosed.feature;
                 let linear: f64 = feature.constant + feature.slopes.iter().zip(&state).map(|(s, x)| s * x).sum::<f64>();
                 let off = (f64::from(input) - linear).abs();
                 prop_assert!(off <= feature.radius + 1e-12, "feature {k}: {input} is {off} off, radius {}", feature.radius);

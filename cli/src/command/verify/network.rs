@@ -2,8 +2,8 @@
 
 use crate::failure::Failure;
 use cede_sim::output;
-use cede_verify::network::{self as verifier, Answer, Certificate, Report, Settings};
-use clap::Args;
+use cede_verify::network::{self as verifier, Answer, Branching, Certificate, Report, Settings};
+use clap::{Args, ValueEnum};
 use miette::{IntoDiagnostic, WrapErr, miette};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -29,12 +29,34 @@ pub(crate) struct Network {
     /// Seed of the search for counterexamples.
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    /// What to cut regions across: the inputs, the phases of ReLUs, or whichever suits the
+    /// number of inputs.
+    #[arg(long, value_enum, default_value_t = Cut::Auto)]
+    branching: Cut,
     /// Write a certificate of `unsat` for `cede verify check`.
     #[arg(long, value_name = "FILE")]
     certificate: Option<PathBuf>,
     /// Print one JSON object instead.
     #[arg(long)]
     json: bool,
+}
+
+/// See [`Branching`].
+#[derive(Clone, Copy, ValueEnum)]
+enum Cut {
+    Auto,
+    Inputs,
+    Phases,
+}
+
+impl From<Cut> for Branching {
+    fn from(cut: Cut) -> Self {
+        match cut {
+            Cut::Auto => Self::Auto,
+            Cut::Inputs => Self::Inputs,
+            Cut::Phases => Self::Phases,
+        }
+    }
 }
 
 impl Network {
@@ -52,8 +74,8 @@ impl Network {
         let settings = Settings {
             timeout,
             seed: self.seed,
+            branching: self.branching.into(),
             record: self.certificate.is_some(),
-            ..Settings::default()
         };
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(self.threads)

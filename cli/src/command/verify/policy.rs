@@ -8,23 +8,27 @@ use cede_verify::policy::{Finding, Settled, Subject};
 use clap::Args;
 use miette::{IntoDiagnostic, WrapErr, miette};
 use std::io::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+
+/// What is claimed of the embedded policy.
+const PROPERTIES: &str = include_str!("../../../../docs/safety/policy.toml");
 
 /// Settles each property of a file for a policy. A proof is about what the controller computes in
 /// `f32`; a refutation is a state at which it was run. Exit code 1 if a property is not proved.
 #[derive(Args)]
 pub(crate) struct Policy {
-    /// The policy (`.cede`).
+    /// The policy (`.cede`); the embedded one if none is given.
     #[arg(long, value_name = "FILE")]
-    weights: PathBuf,
-    /// The properties (TOML).
-    #[arg(long, value_name = "FILE", default_value = "docs/safety/policy.toml")]
-    properties: PathBuf,
+    weights: Option<PathBuf>,
+    /// The properties (TOML); those of `docs/safety/policy.toml`, as they were when this program
+    /// was built, if none are given.
+    #[arg(long, value_name = "FILE")]
+    properties: Option<PathBuf>,
     /// Give up on a property after so many seconds.
     #[arg(long, value_name = "SECONDS", default_value_t = 60)]
     timeout: u64,
-    /// Have the independent checker go over every proof of an acceleration's bound.
+    /// Have the independent checker go over every proof.
     #[arg(long)]
     check: bool,
     /// Also find the largest region, scaled about its centre, on which each property is proved.
@@ -41,19 +45,17 @@ pub(crate) struct Policy {
 impl Policy {
     /// Runs the command.
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let words: Vec<u32> = words(&self.named(
-            &self.weights,
-            std::fs::read(&self.weights).into_diagnostic(),
-        )?)
-        .collect();
-        let weights = self.named(
-            &self.weights,
-            Weights::parse(&words).map_err(|e| miette!("{e}")),
-        )?;
-        let subject = self.named(&self.weights, Subject::new(weights).into_diagnostic())?;
-        let text = std::fs::read_to_string(&self.properties).into_diagnostic();
-        let properties = text.and_then(|text| Properties::read(&text).into_diagnostic());
-        let properties = self.named(&self.properties, properties)?.property;
+        let words = match &self.weights {
+            Some(path) => {
+                words(&named(path, std::fs::read(path).into_diagnostic())?).collect::<Vec<u32>>()
+            }
+            None => cede_controller::embedded::words().to_vec(),
+        };
+        let place = self.weights.as_deref();
+        let place = place.unwrap_or(Path::new("the embedded policy"));
+        let weights = named(place, Weights::parse(&words).map_err(|e| miette!("{e}")))?;
+        let subject = named(place, Subject::new(weights).into_diagnostic())?;
+        let properties = self.properties()?;
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(self.threads)
             .build()
@@ -75,10 +77,14 @@ impl Policy {
         }
     }
 
-    fn named<T>(&self, path: &std::path::Path, result: miette::Result<T>) -> Result<T, Failure> {
-        result
-            .wrap_err_with(|| format!("cannot use {}", path.display()))
-            .map_err(Failure::Input)
+    fn properties(&self) -> Result<Vec<StateProperty>, Failure> {
+        let Some(path) = &self.properties else {
+            let properties = Properties::read(PROPERTIES).into_diagnostic();
+            return Ok(named(Path::new("docs/safety/policy.toml"), properties)?.property);
+        };
+        let text = std::fs::read_to_string(path).into_diagnostic();
+        let properties = text.and_then(|text| Properties::read(&text).into_diagnostic());
+        Ok(named(path, properties)?.property)
     }
 
     fn row<'p>(&self, subject: &Subject<'_>, property: &'p StateProperty) -> Row<'p> {
@@ -107,6 +113,12 @@ impl Policy {
     }
 }
 
+fn named<T>(path: &Path, result: miette::Result<T>) -> Result<T, Failure> {
+    result
+        .wrap_err_with(|| format!("cannot use {}", path.display()))
+        .map_err(Failure::Input)
+}
+
 struct Row<'p> {
     property: &'p StateProperty,
     settled: Settled,
@@ -127,6 +139,7 @@ impl Row<'_> {
             finding,
             regions,
             checked,
+            rounding,
         } = &self.settled;
         let mut line = format!(
             "{:<6} {:<9} {} ({regions} regions",
@@ -136,6 +149,9 @@ impl Row<'_> {
         );
         if *checked > 0 {
             line += &format!(", {checked} checked independently");
+        }
+        if *rounding > 0.0 {
+            line += &format!(", differences up to {rounding:.0e} m/s² of rounding");
         }
         line.push(')');
         if let Finding::Refuted {
@@ -172,7 +188,8 @@ impl Row<'_> {
         };
         serde_json::json!({
             "id": self.property.id, "title": self.property.title, "finding": self.word(), "witness": witness,
-            "regions": self.settled.regions, "checked": self.settled.checked, "largest_scale": self.largest,
+            "regions": self.settled.regions, "checked": self.settled.checked,
+            "rounding": self.settled.rounding, "largest_scale": self.largest,
         })
     }
 }
