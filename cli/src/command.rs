@@ -3,6 +3,8 @@
 mod data;
 mod demo;
 mod evaluate;
+mod export;
+mod import;
 mod replay;
 mod reproduce;
 mod train;
@@ -28,6 +30,10 @@ pub(crate) enum Command {
     Train(train::Args),
     /// Train and judge the rows of the paper's table
     Reproduce(reproduce::Args),
+    /// Write a policy as ONNX or safetensors, for other programs
+    Export(export::Args),
+    /// Make a weights file of an ONNX policy that was trained elsewhere
+    Import(import::Args),
     /// Prove properties of networks, and check proofs
     #[command(subcommand)]
     Verify(verify::Verify),
@@ -40,6 +46,8 @@ impl Command {
             Self::Data(data) => data.run(),
             Self::Demo => demo::run(),
             Self::Evaluate(args) => evaluate::run(&args),
+            Self::Export(args) => export::run(&args),
+            Self::Import(args) => import::run(&args),
             Self::Replay(args) => replay::run(&args),
             Self::Train(args) => train::run(&args),
             Self::Reproduce(args) => reproduce::run(&args),

@@ -52,23 +52,24 @@ impl Drivers {
     pub(crate) fn contenders(&self, weights: Option<&Path>) -> Result<Vec<Contender>, Failure> {
         let mut contenders = Vec::new();
         for &name in &self.names {
-            match (name, weights) {
-                (Name::Baseline(baseline), _) => contenders.push(Contender::Baseline(baseline)),
-                (Name::Cede, Some(file)) => contenders.push(Contender::Cede(load(file)?)),
-                (Name::Cede, None) => contenders.push(Contender::Cede(embedded()?)),
-            }
+            contenders.push(match name {
+                Name::Baseline(baseline) => Contender::Baseline(baseline),
+                Name::Cede => Contender::Cede(policy(weights)?),
+            });
         }
         Ok(contenders)
     }
 }
 
-/// The policy that comes with the program.
-fn embedded() -> Result<Policy<'static>, Failure> {
-    let words = cede_controller::embedded::words();
-    Policy::new(words).map_err(|error| Failure::input(error, "report this as a bug"))
-}
-
-fn load(file: &Path) -> Result<Policy<'static>, Failure> {
+/// The policy of a weights file, or the one that comes with the program.
+///
+/// # Errors
+/// The file cannot be used.
+pub(crate) fn policy(weights: Option<&Path>) -> Result<Policy<'static>, Failure> {
+    let Some(file) = weights else {
+        let words = cede_controller::embedded::words();
+        return Policy::new(words).map_err(|error| Failure::input(error, "report this as a bug"));
+    };
     weights::load(file)
         .map_err(|error| Failure::input(error, "give a .cede file as `cede train` writes it"))
 }

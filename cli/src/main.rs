@@ -1,5 +1,8 @@
 //! `cede`: from recorded tracks to a trained, proved and reported driver, in one binary.
 
+#[macro_use]
+mod stdout;
+
 mod command;
 mod drivers;
 mod failure;

@@ -18,6 +18,49 @@ pub const CREEP: f32 = 0.5;
 /// Braking (m/s²) of the stopping distance in the `Route` features: the paper's limit.
 const BRAKING: f32 = 3.0;
 
+const RAW_LABELS: [&str; 8] = [
+    "ego_x",
+    "ego_y",
+    "ego_speed",
+    "ego_heading",
+    "other_x",
+    "other_y",
+    "other_speed",
+    "other_heading",
+];
+
+const ROUTE_LABELS: [&str; 14] = [
+    "ego_distance",
+    "ego_speed",
+    "other_distance",
+    "other_speed",
+    "ego_arrival",
+    "other_arrival",
+    "ego_svo",
+    "ego_spare",
+    "other_spare",
+    "crossing",
+    "merging",
+    "right_of_way",
+    "ego_turn",
+    "other_turn",
+];
+
+const TRAFFIC_LABELS: [&str; 4] = [
+    "ego_leader_gap",
+    "ego_leader_speed",
+    "other_leader_gap",
+    "other_leader_speed",
+];
+
+const SCENE_LABELS: [&str; 5] = [
+    "ego_leader_gap",
+    "ego_leader_speed",
+    "crosser_distance",
+    "crosser_its_distance",
+    "crosser_its_speed",
+];
+
 /// Which features a network is told; the order of the values is part of the weights file's format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum FeatureSet {
@@ -67,6 +110,17 @@ impl FeatureSet {
             Self::Traffic => "traffic",
             Self::Scene => "scene",
         }
+    }
+
+    /// What the features are called in files that other programs read, in their order.
+    pub fn labels(self) -> impl Iterator<Item = &'static str> {
+        let (first, rest): (&[&str], &[&str]) = match self {
+            Self::Raw => (&RAW_LABELS, &[]),
+            Self::Route => (&ROUTE_LABELS, &[]),
+            Self::Traffic => (&ROUTE_LABELS, &TRAFFIC_LABELS),
+            Self::Scene => (&ROUTE_LABELS, &SCENE_LABELS),
+        };
+        first.iter().chain(rest).copied()
     }
 
     /// The features of `pair`, in their own units; the places after [`FeatureSet::count`] are zero.
@@ -208,6 +262,7 @@ mod tests {
             let features = set.of(&pair());
             assert!(features[set.count()..].iter().all(|&f| f == 0.0));
             assert!(features.iter().all(|f| f.is_finite()));
+            assert_eq!(set.labels().count(), set.count());
         }
     }
 

@@ -107,7 +107,9 @@ impl Row {
             priority_accuracy: priority.fraction(),
             priority_accuracy_interval: priority.interval(),
             episode_length_error: length.map(|mean| mean.mean),
-            episode_length_error_interval: length.map(Mean::interval),
+            // An error is never negative, whatever the normal approximation says.
+            episode_length_error_interval: length
+                .map(|mean| mean.interval().map(|bound| bound.max(0.0))),
             episode_length_error_s: mean(measures().map(|m| m.length_error_s)),
             collisions: collisions.count,
             collision_share_interval: collisions.interval(),

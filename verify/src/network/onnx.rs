@@ -1,17 +1,17 @@
 //! Reads feed-forward networks from ONNX files into the normal form.
 //!
-//! Understood: Gemm, MatMul, Add, Sub, Mul and Div with constants, Relu, Tanh, Flatten, Reshape,
+//! Understood: Gemm, MatMul, Add, Sub, Mul and Div with constants, Relu, Tanh, Clip, Flatten, Reshape,
 //! Transpose, Squeeze, Unsqueeze, Identity, Constant, Concat; `f32` and `f64` tensors, raw or
 //! typed. A symbolic dimension (a batch) counts as 1. Weights keep their exact values: where two
 //! affine maps in a row cannot be merged without rounding, they stay two layers.
 
 mod affine;
 mod operators;
-mod proto;
 mod tensor;
 
 use super::model::{ModelError, Network};
 use affine::Builder;
+use cede_exchange::onnx::proto;
 use operators::Value;
 use prost::Message;
 use std::collections::HashMap;
@@ -78,11 +78,7 @@ pub fn read(bytes: &[u8]) -> Result<Network, OnnxError> {
     for node in &graph.node {
         let value =
             operators::apply(node, &values, &mut builder).map_err(|what| OnnxError::Operator {
-                node: if node.name.is_empty() {
-                    node.output.join(", ")
-                } else {
-                    node.name.clone()
-                },
+                node: node.label(),
                 operator: node.op_type.clone(),
                 what,
             })?;

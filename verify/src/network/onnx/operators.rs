@@ -2,8 +2,9 @@
 
 use super::affine::{Builder, Variable};
 use super::proto::{Attribute, Node};
-use super::tensor::{self, Constant, Data, Shape};
+use super::tensor::{self, Constant, Shape};
 use crate::network::model::Activation;
+use cede_exchange::onnx::Values;
 use std::collections::HashMap;
 
 /// A tensor of the graph.
@@ -30,8 +31,8 @@ impl Value {
             Self::Variable(variable) => Self::Variable(variable.rearranged(shape, pick)),
             Self::Constant(constant) => {
                 let data = match &constant.data {
-                    Data::Real(values) => Data::Real(moved(values, shape.size(), pick)),
-                    Data::Integer(values) => Data::Integer(moved(values, shape.size(), pick)),
+                    Values::Real(values) => Values::Real(moved(values, shape.size(), pick)),
+                    Values::Integer(values) => Values::Integer(moved(values, shape.size(), pick)),
                 };
                 Self::Constant(Constant { shape, data })
             }
@@ -67,7 +68,7 @@ impl<'a> Arguments<'a> {
     fn integers(&self, index: usize) -> Result<&'a [i64], String> {
         match self.value(index)? {
             Value::Constant(Constant {
-                data: Data::Integer(values),
+                data: Values::Integer(values),
                 ..
             }) => Ok(values),
             _ => Err(format!("input {index} must be a constant of integers")),
@@ -75,10 +76,7 @@ impl<'a> Arguments<'a> {
     }
 
     fn attribute(&self, name: &str) -> Option<&'a Attribute> {
-        self.node
-            .attribute
-            .iter()
-            .find(|attribute| attribute.name == name)
+        self.node.attribute(name)
     }
 
     fn integer(&self, name: &str, otherwise: i64) -> i64 {
@@ -123,6 +121,7 @@ pub(super) fn apply(
         "Identity" | "Dropout" => arguments.value(0).cloned(),
         "Relu" => activation(&arguments, builder, Activation::Relu),
         "Tanh" => activation(&arguments, builder, Activation::Tanh),
+        "Clip" => clip(&arguments, builder),
         "Flatten" => flatten(&arguments),
         "Reshape" => reshape(&arguments),
         "Squeeze" => squeeze(&arguments),
@@ -148,20 +147,20 @@ fn constant(arguments: &Arguments<'_>) -> Result<Value, String> {
     let vector = |length: usize| Shape::from_dims(vec![length]).ok_or("is too large");
     let scalar = || Shape::from_dims(Vec::new()).ok_or("is too large");
     let (shape, data) = if let Some(a) = arguments.attribute("value_float") {
-        (scalar()?, Data::Real(vec![f64::from(a.f)]))
+        (scalar()?, Values::Real(vec![f64::from(a.f)]))
     } else if let Some(a) = arguments.attribute("value_floats") {
         (
             vector(a.floats.len())?,
-            Data::Real(a.floats.iter().copied().map(f64::from).collect()),
+            Values::Real(a.floats.iter().copied().map(f64::from).collect()),
         )
     } else if let Some(a) = arguments.attribute("value_int") {
-        (scalar()?, Data::Integer(vec![a.i]))
+        (scalar()?, Values::Integer(vec![a.i]))
     } else if let Some(a) = arguments.attribute("value_ints") {
-        (vector(a.ints.len())?, Data::Integer(a.ints.clone()))
+        (vector(a.ints.len())?, Values::Integer(a.ints.clone()))
     } else {
         return Err("has no value of a supported kind".to_owned());
     };
-    if matches!(&data, Data::Real(values) if values.iter().any(|v| !v.is_finite())) {
+    if matches!(&data, Values::Real(values) if values.iter().any(|v| !v.is_finite())) {
         return Err("holds a number that is not finite".to_owned());
     }
     Ok(Value::Constant(Constant { shape, data }))
@@ -175,6 +174,46 @@ fn activation(
     match arguments.value(0)? {
         Value::Variable(variable) => builder.activate(variable, activation).map(Value::Variable),
         Value::Constant(_) => Err("of a constant is not supported".to_owned()),
+    }
+}
+
+/// min(high, max(low, x)) as low + relu(x − low) and high − relu(high − x).
+fn clip(arguments: &Arguments<'_>, builder: &mut Builder) -> Result<Value, String> {
+    let Value::Variable(variable) = arguments.value(0)? else {
+        return Err("of a constant is not supported".to_owned());
+    };
+    let mut value = variable.clone();
+    for (name, index, sign) in [("min", 1, 1.0), ("max", 2, -1.0)] {
+        let Some(bound) = clip_bound(arguments, name, index)? else {
+            continue;
+        };
+        let shape = || variable.shape.clone();
+        value = builder.map(&value, shape(), |i| (vec![(i, sign)], -sign * bound))?;
+        value = builder.activate(&value, Activation::Relu)?;
+        value = builder.map(&value, shape(), |i| (vec![(i, sign)], bound))?;
+    }
+    Ok(Value::Variable(value))
+}
+
+/// A bound of Clip: an attribute up to operator set 10, an input afterwards, and either may be left out.
+fn clip_bound(arguments: &Arguments<'_>, name: &str, index: usize) -> Result<Option<f64>, String> {
+    if let Some(attribute) = arguments.attribute(name) {
+        let bound = f64::from(attribute.f);
+        return if bound.is_finite() {
+            Ok(Some(bound))
+        } else {
+            Err(format!("{name} is not finite"))
+        };
+    }
+    if !arguments.given(index) {
+        return Ok(None);
+    }
+    match arguments.value(index)? {
+        Value::Constant(Constant {
+            data: Values::Real(values),
+            ..
+        }) if values.len() == 1 => Ok(Some(values[0])),
+        _ => Err(format!("{name} must be a real constant")),
     }
 }
 
@@ -350,13 +389,13 @@ fn mixed<'a>(arguments: &Arguments<'a>) -> Result<Mixed<'a>, String> {
         }
     };
     match &constant.data {
-        Data::Real(values) => Ok(Mixed {
+        Values::Real(values) => Ok(Mixed {
             variable,
             shape: &constant.shape,
             values,
             variable_first,
         }),
-        Data::Integer(_) => Err("with integers is not supported".to_owned()),
+        Values::Integer(_) => Err("with integers is not supported".to_owned()),
     }
 }
 
@@ -571,7 +610,7 @@ fn bias(arguments: &Arguments<'_>, whole: &Shape) -> Result<Vec<f64>, String> {
     match arguments.value(2)? {
         Value::Constant(Constant {
             shape,
-            data: Data::Real(values),
+            data: Values::Real(values),
         }) if shape.broadcast(whole).as_ref() == Some(whole) => Ok((0..whole.size())
             .map(|i| values[shape.index_in(whole, i)])
             .collect()),

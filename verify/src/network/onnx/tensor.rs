@@ -1,6 +1,7 @@
 //! Shapes and constant tensors.
 
 use super::{OnnxError, proto};
+use cede_exchange::onnx::Values;
 
 /// The most elements of a tensor or entries of a layer's matrix.
 pub(super) const MOST_ELEMENTS: usize = 1 << 22;
@@ -65,22 +66,12 @@ impl Shape {
     }
 }
 
-/// A constant tensor; integers (shapes, axes) are held apart from reals.
+/// A constant tensor.
 #[derive(Clone, Debug)]
 pub(super) struct Constant {
     pub(super) shape: Shape,
-    pub(super) data: Data,
+    pub(super) data: Values,
 }
-
-#[derive(Clone, Debug)]
-pub(super) enum Data {
-    Real(Vec<f64>),
-    Integer(Vec<i64>),
-}
-
-const FLOAT: i32 = 1;
-const INT64: i32 = 7;
-const DOUBLE: i32 = 11;
 
 /// A tensor's shape and values.
 pub(super) fn read(tensor: &proto::Tensor) -> Result<Constant, OnnxError> {
@@ -88,48 +79,8 @@ pub(super) fn read(tensor: &proto::Tensor) -> Result<Constant, OnnxError> {
         name: tensor.name.clone(),
         what,
     };
-    if tensor.data_location != 0 {
-        return Err(fault("its data lie outside the file".to_owned()));
-    }
     let shape =
         Shape::new(&tensor.dims).ok_or_else(|| fault(format!("shape {:?}", tensor.dims)))?;
-    let raw = !tensor.raw_data.is_empty();
-    let data = match tensor.data_type {
-        FLOAT if raw => Data::Real(words(&tensor.raw_data, |b| {
-            f64::from(f32::from_le_bytes(b))
-        })),
-        FLOAT => Data::Real(tensor.float_data.iter().copied().map(f64::from).collect()),
-        DOUBLE if raw => Data::Real(words(&tensor.raw_data, f64::from_le_bytes)),
-        DOUBLE => Data::Real(tensor.double_data.clone()),
-        INT64 if raw => Data::Integer(words(&tensor.raw_data, i64::from_le_bytes)),
-        INT64 => Data::Integer(tensor.int64_data.clone()),
-        other => {
-            return Err(fault(format!(
-                "element type {other}; supported are float, double and int64"
-            )));
-        }
-    };
-    let (count, finite) = match &data {
-        Data::Real(values) => (values.len(), values.iter().all(|v| v.is_finite())),
-        Data::Integer(values) => (values.len(), true),
-    };
-    if count != shape.size() {
-        return Err(fault(format!(
-            "{count} values for shape {:?}",
-            shape.dims()
-        )));
-    }
-    if !finite {
-        return Err(fault("holds a number that is not finite".to_owned()));
-    }
+    let data = tensor.values().map_err(|e| fault(e.to_string()))?;
     Ok(Constant { shape, data })
-}
-
-fn words<const N: usize, T>(bytes: &[u8], read: impl Fn([u8; N]) -> T) -> Vec<T> {
-    bytes
-        .as_chunks::<N>()
-        .0
-        .iter()
-        .map(|chunk| read(*chunk))
-        .collect()
 }

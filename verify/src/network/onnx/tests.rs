@@ -40,14 +40,19 @@ fn integers(name: &str, values: &[i64]) -> Tensor {
 fn value(name: &str, dims: &[i64]) -> ValueInfo {
     let dim = dims
         .iter()
-        .map(|&dim_value| Dimension { dim_value })
+        .map(|&dim_value| Dimension {
+            dim_value,
+            ..Dimension::default()
+        })
         .collect();
     let tensor_type = Some(TensorType {
         shape: Some(ShapeProto { dim }),
+        ..TensorType::default()
     });
     ValueInfo {
         name: name.into(),
         r#type: Some(Type { tensor_type }),
+        ..ValueInfo::default()
     }
 }
 
@@ -78,7 +83,9 @@ fn model(input: Vec<ValueInfo>, initializer: Vec<Tensor>, node: Vec<Node>) -> Ve
             initializer,
             input,
             output,
+            ..Graph::default()
         }),
+        ..Model::default()
     }
     .encode_to_vec()
 }
@@ -180,6 +187,28 @@ fn sums_divisions_and_tanh_keep_their_exact_meaning() {
         network.layers().iter().any(|l| l.uncertainty > 0.0),
         "1/3 has no exact value"
     );
+}
+
+#[test]
+fn clip_limits_from_both_sides_or_one() {
+    let float = |name: &str, f| Attribute {
+        name: name.into(),
+        f,
+        ..Attribute::default()
+    };
+    let inputs = [-7.5, -0.25, 0.0, 1.3, 9.0];
+    let clipped = |input: &[&str], attributes: Vec<Attribute>, expected: [f64; 5]| {
+        let bounds = vec![tensor("low", &[], &[-0.5]), tensor("high", &[], &[1.0])];
+        let clip = node("Clip", input, "y", attributes);
+        let bytes = model(vec![value("x", &[1, 5])], bounds, vec![clip]);
+        run(&bytes, &inputs, &expected);
+    };
+    clipped(&["x", "low", "high"], vec![], [-0.5, -0.25, 0.0, 1.0, 1.0]);
+    clipped(&["x", "", "high"], vec![], [-7.5, -0.25, 0.0, 1.0, 1.0]);
+    clipped(&["x", "low"], vec![], [-0.5, -0.25, 0.0, 1.3, 9.0]);
+    clipped(&["x", "high", "low"], vec![], [-0.5; 5]);
+    let old = vec![float("min", -0.5), float("max", 1.0)];
+    clipped(&["x"], old, [-0.5, -0.25, 0.0, 1.0, 1.0]);
 }
 
 #[test]

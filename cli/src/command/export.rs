@@ -1,0 +1,42 @@
+//! `cede export`.
+
+use crate::drivers;
+use crate::failure::Failure;
+use cede_exchange::{onnx, safetensors};
+use cede_sim::output;
+use clap::ValueEnum;
+use std::path::PathBuf;
+
+/// ONNX: raw features in, accelerations (m/s²) out, with normalisation and squashing inside; metadata name the
+/// features. Safetensors: the bare numbers of network and normalisation.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The policy (`.cede`); by default the one that comes with the program
+    #[arg(long, value_name = "FILE")]
+    weights: Option<PathBuf>,
+    /// The format
+    #[arg(long)]
+    format: Format,
+    /// The file to write
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Format {
+    Onnx,
+    Safetensors,
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let policy = drivers::policy(args.weights.as_deref())?;
+    let bytes = match args.format {
+        Format::Onnx => onnx::write(policy.weights()),
+        Format::Safetensors => safetensors::write(policy.weights())
+            .map_err(|error| Failure::input(error, "report this as a bug"))?,
+    };
+    output::write(&args.out, |file| file.write_all(&bytes))?;
+    println!("{}", args.out.display());
+    Ok(())
+}

@@ -1,0 +1,92 @@
+//! One update of soft actor-critic at the paper's size, beside the machine's matrix products.
+//!
+//! Throughput is in floating-point operations a CPU-second: those of the matrix products that the update's
+//! mathematics asks for, so that its share of the peak can be read off.
+
+#[path = "../../sim/benches/processor/mod.rs"]
+mod processor;
+
+use cede_train::learner::{Learner, Rates};
+use cede_train::matmul::{Into, Matrix, multiply};
+use cede_train::replay::Batch;
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use processor::CpuTime;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+const BATCH: usize = 512;
+const FEATURES: usize = 8;
+const ACTIONS: usize = 2;
+/// Side of the square matrices whose product stands for the machine's peak.
+const SIDE: usize = 768;
+
+/// Operations of an update with hidden layers of `width`. A pass through a network takes two for each
+/// sample and weight; so do the derivatives with respect to what it was told, and those with respect to the weights.
+fn operations(width: usize) -> u64 {
+    let weights = |inputs, outputs| inputs * width + 2 * width * width + width * outputs;
+    let actor = weights(FEATURES, 2 * ACTIONS);
+    let critic = weights(FEATURES + ACTIONS, 1);
+    // Actor: for the labels, for its loss and both derivatives. Critics, twice: the target's value, then
+    // value and both derivatives for the critic's loss, value and one derivative for the actor's.
+    let passes = 4 * actor + 2 * 6 * critic;
+    (2 * BATCH * passes) as u64
+}
+
+fn batch(random: &mut Pcg64) -> Batch {
+    let mut draw =
+        |n: usize| -> Vec<f32> { (0..n).map(|_| random.random_range(-1.0..1.0)).collect() };
+    Batch {
+        observations: draw(BATCH * FEATURES),
+        actions: draw(BATCH * ACTIONS),
+        rewards: draw(BATCH),
+        next: draw(BATCH * FEATURES),
+        continues: vec![1.0; BATCH],
+    }
+}
+
+fn update(c: &mut Criterion<CpuTime>) {
+    let mut group = c.benchmark_group("update");
+    for width in [128, 256] {
+        let mut random = Pcg64::seed_from_u64(1);
+        let (rates, batch) = (Rates::default(), batch(&mut random));
+        let mut learner = Learner::new(FEATURES, ACTIONS, width, &rates, &mut random);
+        group.throughput(Throughput::Elements(operations(width)));
+        group.bench_function(BenchmarkId::from_parameter(width), |b| {
+            b.iter(|| learner.update(&batch, &rates, &mut random));
+        });
+    }
+    group.finish();
+}
+
+fn product(c: &mut Criterion<CpuTime>) {
+    let mut group = c.benchmark_group("product");
+    let mut random = Pcg64::seed_from_u64(2);
+    // The machine's peak, then the product that an update consists of.
+    for (rows, inner, columns) in [(SIDE, SIDE, SIDE), (BATCH, 128, 128), (BATCH, 256, 256)] {
+        let mut draw =
+            |n: usize| -> Vec<f32> { (0..n).map(|_| random.random_range(-1.0..1.0)).collect() };
+        let (left, right) = (draw(rows * inner), draw(inner * columns));
+        let mut out = vec![0.0; rows * columns];
+        group.throughput(Throughput::Elements((2 * rows * inner * columns) as u64));
+        group.bench_function(
+            BenchmarkId::from_parameter(format!("{rows}x{inner}x{columns}")),
+            |b| {
+                b.iter(|| {
+                    let (left, right) = (
+                        Matrix::new(&left, rows, inner),
+                        Matrix::new(&right, inner, columns),
+                    );
+                    multiply(&mut out, left, right, Into::Replace);
+                });
+            },
+        );
+    }
+    group.finish();
+}
+
+criterion_group!(
+    name = benches;
+    config = Criterion::default().with_measurement(CpuTime);
+    targets = update, product
+);
+criterion_main!(benches);
