@@ -69,23 +69,45 @@ pub fn multiply(destination: &mut [f32], left: Matrix<'_>, right: Matrix<'_>, in
     let (m, n, k) = (left.rows, right.columns, left.columns);
     assert_eq!(k, right.rows, "inner dimensions");
     assert_eq!(destination.len(), m * n, "a product of {m} × {n}");
+    // The kernels write along columns, element by element where these do not lie together. So they are given
+    // the transposed product, rightᵀ · leftᵀ, whose columns are the destination's rows: the same
+    // sums in the same order, at up to fifteen times the speed. Very short rows are no use to them.
+    if n < SHORT {
+        product(destination, (1, n as isize), left, right, into);
+    } else {
+        let (left, right) = (left.transpose(), right.transpose());
+        product(destination, (n as isize, 1), right, left, into);
+    }
+}
+
+/// Rows of the destination shorter than this are not worth a kernel's vectors.
+const SHORT: usize = 8;
+
+/// `left · right`, to a destination with these strides from (column to column, row to row).
+fn product(
+    destination: &mut [f32],
+    (column, row): (isize, isize),
+    left: Matrix<'_>,
+    right: Matrix<'_>,
+    into: Into,
+) {
     let (left_row, left_column) = left.strides();
     let (right_row, right_column) = right.strides();
     let (read, alpha) = match into {
         Into::Replace => (false, 0.0),
         Into::Add => (true, 1.0),
     };
-    // SAFETY: the assertions above and `Matrix::new` make every index that the
-    // kernel forms from these shapes and strides lie inside the three slices;
-    // `destination` is borrowed mutably, so it overlaps neither operand.
+    // SAFETY: the assertions of `multiply`, `Matrix::new` and strides that are a permutation of the
+    // destination's own make every index that the kernel forms from these shapes and strides lie
+    // inside the three slices; `destination` is borrowed mutably, so it overlaps neither operand.
     unsafe {
         gemm_f32::gemm::f32::get_gemm_fn()(
-            m,
-            n,
-            k,
+            left.rows,
+            right.columns,
+            left.columns,
             destination.as_mut_ptr(),
-            1,
-            n as isize,
+            column,
+            row,
             read,
             left.data.as_ptr(),
             left_column,
@@ -132,7 +154,7 @@ mod tests {
                 .map(|i| ((i * 7 % 11) as f32) - 5.0)
                 .collect::<Vec<_>>()
         };
-        for (m, n, k) in [(1, 1, 1), (3, 1, 5), (17, 9, 4), (33, 64, 12)] {
+        for (m, n, k) in [(1, 1, 1), (3, 1, 5), (17, 9, 4), (64, 7, 33), (33, 64, 12)] {
             let (a, b) = (values(m * k), values(k * n));
             for (left, right) in [
                 (Matrix::new(&a, m, k), Matrix::new(&b, k, n)),

@@ -20,7 +20,7 @@ pub enum Values {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TensorError {
     /// They are in another file.
-    #[error("its data lie outside the file")]
+    #[error("its data lie outside the file (in PyTorch: export with external_data=False)")]
     Elsewhere,
     /// An element type that is not read.
     #[error("element type {0}; supported are float, double and int64")]
