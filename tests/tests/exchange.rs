@@ -117,7 +117,7 @@ fn onnxruntime_gives_the_controllers_accelerations() {
         let rows: Vec<u8> = rows.flat_map(f32::to_le_bytes).collect();
         std::fs::write(&model, onnx::write(policy.weights())).unwrap();
         std::fs::write(&told, rows).unwrap();
-        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/onnxruntime.py");
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/run_policy.py");
         let mut run = Command::new(&python);
         let status = run.arg(script).args([&model, &told, &given]).status();
         assert!(status.unwrap().success());
