@@ -93,7 +93,7 @@ pub fn read(bytes: &[u8], told: Told) -> Result<Vec<u32>, ImportError> {
         return Err(ImportError::Inputs { features, inputs });
     }
     let chain = within_limit(chain);
-    let (layers, width) = shaped(chain.layers, perspective)?;
+    let (layers, width) = shaped(&chain.layers, perspective)?;
     let parameters: Vec<f32> = layers
         .iter()
         .flat_map(|layer| layer.biases.iter().chain(&layer.weights))
@@ -147,10 +147,7 @@ fn room(weights: &[f32]) -> f64 {
 }
 
 /// The layers in the controller's shape: three hidden ones of one width, and four outputs.
-fn shaped(
-    layers: Vec<Layer>,
-    perspective: Perspective,
-) -> Result<(Vec<Layer>, usize), ImportError> {
+fn shaped(layers: &[Layer], perspective: Perspective) -> Result<(Vec<Layer>, usize), ImportError> {
     let (last, hidden) = match layers.split_last() {
         Some((last, hidden)) if (1..=3).contains(&hidden.len()) => (last, hidden),
         _ => return Err(ImportError::Depth(layers.len().saturating_sub(1))),
