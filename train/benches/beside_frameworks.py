@@ -18,7 +18,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-BATCH, FEATURES, ACTIONS, WIDTHS, ROUNDS, SECONDS = 512, 8, 2, (128, 256), 3, 2.0
+BATCH, FEATURES, ACTIONS, WIDTHS, ROUNDS, SECONDS = 512, 8, 2, (128, 256), 3, 1.0
 SIDE = 768
 DISCOUNT, SOFTNESS, ENTROPY = 0.99, 0.005, -2.0
 RATES = {"policy": 1e-4, "critic": 1e-3, "temperature": 1e-4}
@@ -31,9 +31,9 @@ def cpu_seconds():
 
 
 def rate(step):
-    """Calls of `step` a CPU-second, after a second to warm up."""
+    """Calls of `step` a CPU-second, after warming up."""
     start = cpu_seconds()
-    while cpu_seconds() - start < 1.0:
+    while cpu_seconds() - start < 0.3:
         step()
     start, count = cpu_seconds(), 0
     while cpu_seconds() - start < SECONDS:
@@ -244,7 +244,7 @@ def jax(width):
 def cede():
     """Updates a CPU-second by width, and operations a second of the large product."""
     command = ["cargo", "bench", "--quiet", "-p", "cede", "-p", "cede-train", "--bench", "update", "--"]
-    command += ["--warm-up-time", "1", "--measurement-time", str(SECONDS), "--sample-size", "20"]
+    command += ["--warm-up-time", "0.3", "--measurement-time", str(SECONDS), "--sample-size", "10"]
     subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
 
