@@ -16,9 +16,14 @@ export CARGO_TERM_QUIET=true
 cargo=(cargo --config net.retry=3)
 workspace=firmware/cortex-m/Cargo.toml
 
-# The host's side: observations, its decisions, and the weights that both run.
+# The host's side: observations, and its decisions.
 mkdir -p "$build/golden" "$build/tampered"
 "${cargo[@]}" run --release --manifest-path $workspace --target-dir "$build/host" -p cede-golden -- "$build/golden"
+
+# Lints see the host's build of the same code: they need no target, and nothing is linked.
+if "${cargo[@]}" clippy --version >/dev/null 2>&1; then
+    CEDE_GOLDEN=$build/golden "${cargo[@]}" clippy --manifest-path $workspace --target-dir "$build/host" --workspace -- -D warnings
+fi
 
 linker=$(rustc --print sysroot)/lib/rustlib/$(rustc --print host-tuple)/bin/rust-lld
 export CARGO_TARGET_THUMBV7EM_NONE_EABIHF_LINKER=$linker
@@ -75,8 +80,10 @@ value() { sed -n "s/^$1: //p" "$build/log"; }
 # Everything in flash but the golden file: vectors, code, constants, weights, initial values.
 flash=$(arm-none-eabi-size -A "$elf" | awk '$1 ~ /^\.(vector_table|text|rodata|data|gnu\.sgstubs)$/ { sum += $2 } END { print sum }')
 ram=$(value "RAM to decide, bytes")
+preparing=$(value "RAM to prepare a scene, bytes")
 echo "flash with weights, bytes: $flash (of $max_flash)"
 network=$(value "instructions of the network, most")
 echo "network 8-64-64-64-4, instructions for each of its 2 x 8,960 multiplications and additions: $(awk "BEGIN { printf \"%.2f\", $network / 17920 }")"
 [ "$flash" -le $max_flash ] || fail "more than $max_flash bytes of flash"
-[ "$ram" -le $max_ram ] || fail "more than $max_ram bytes of RAM"
+[ "$ram" -le $max_ram ] || fail "more than $max_ram bytes of RAM to decide"
+[ "$preparing" -le $max_ram ] || fail "more than $max_ram bytes of RAM to prepare a scene"

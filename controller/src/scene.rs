@@ -111,22 +111,58 @@ impl<const N: usize> Scene<N> {
         ego: Path<'_, P>,
         others: &[Path<'_, P>],
     ) -> Result<Self, SceneError> {
-        if others.is_empty() || others.len() > MAX_OTHERS {
+        let mut scene = Self::alone(ego)?;
+        for other in others {
+            scene.add(ego, *other)?;
+        }
+        if scene.meetings.is_empty() {
             return Err(SceneError::Others);
         }
-        let mut scene = Self {
+        Ok(scene)
+    }
+
+    /// [`Scene::new`] from routes that come one after the other, for targets without the memory
+    /// to hold all of them at once: each is dropped before the next one is asked for.
+    ///
+    /// # Errors
+    /// See [`SceneError`]. Never panics.
+    // Not inlined, so that it fills the caller's scene and no copy of it.
+    #[inline(never)]
+    pub fn gather<const P: usize>(
+        ego: Path<'_, P>,
+        others: impl IntoIterator<Item = (Route<P>, Footprint)>,
+    ) -> Result<Self, SceneError> {
+        let mut scene = Self::alone(ego)?;
+        for (route, footprint) in others {
+            let route = &route;
+            scene.add(ego, Path { route, footprint })?;
+        }
+        if scene.meetings.is_empty() {
+            return Err(SceneError::Others);
+        }
+        Ok(scene)
+    }
+
+    /// Nobody but the ego, yet.
+    fn alone<const P: usize>(ego: Path<'_, P>) -> Result<Self, SceneError> {
+        Ok(Self {
             footprint: checked(ego.footprint)?,
             exit: exit(ego.route),
             meetings: Vec::new(),
-        };
-        for other in others {
-            let meeting = Meeting::new(ego, *other)?;
-            scene
-                .meetings
-                .push(meeting)
-                .map_err(|_| SceneError::Others)?;
+        })
+    }
+
+    fn add<const P: usize>(
+        &mut self,
+        ego: Path<'_, P>,
+        other: Path<'_, P>,
+    ) -> Result<(), SceneError> {
+        if self.meetings.len() >= MAX_OTHERS {
+            return Err(SceneError::Others);
         }
-        Ok(scene)
+        let meeting = Meeting::new(ego, other)?;
+        let pushed = self.meetings.push(meeting);
+        pushed.map_err(|_| SceneError::Others)
     }
 
     /// How the ego's route meets each other's.
@@ -161,6 +197,8 @@ impl<const N: usize> Scene<N> {
 }
 
 impl Meeting {
+    // Not inlined, so that its stack is free again when the scene is moved.
+    #[inline(never)]
     fn new<const P: usize>(ego: Path<'_, P>, other: Path<'_, P>) -> Result<Self, SceneError> {
         let other_footprint = checked(other.footprint)?;
         let zones = zones((ego.route, ego.footprint), (other.route, other_footprint));
@@ -317,6 +355,8 @@ mod tests {
         assert_eq!(none.unwrap_err(), SceneError::Others);
         let many = Scene::<2>::new(path(&ego), &[path(&ego); 3]);
         assert_eq!(many.unwrap_err(), SceneError::Others);
+        let too_many = Scene::<9>::new(path(&ego), &[path(&ego); 9]);
+        assert_eq!(too_many.unwrap_err(), SceneError::Others);
         for (length, width) in [(0.0, 2.0), (f32::NAN, 2.0), (5.0, 41.0)] {
             let bad = Path {
                 route: &ego,
@@ -325,6 +365,19 @@ mod tests {
             let refused = Scene::<2>::new(path(&ego), &[bad]);
             assert_eq!(refused.unwrap_err(), SceneError::Footprint);
         }
+    }
+
+    #[test]
+    fn routes_one_after_the_other_make_the_same_scene() {
+        let ego = route(&[(-30.0, 0.0), (30.0, 0.0)]);
+        let others = [
+            route(&[(0.0, -40.0), (0.0, 40.0)]),
+            route(&[(-30.0, 8.0), (-5.0, 0.0), (30.0, 0.0)]),
+        ];
+        let together = Scene::<4>::new(path(&ego), &others.each_ref().map(path));
+        let owned = others.into_iter().map(|route| (route, Footprint::PAPER));
+        assert_eq!(Scene::gather(path(&ego), owned), together);
+        assert_eq!(Scene::<4>::gather(path(&ego), []), Err(SceneError::Others));
     }
 
     #[test]

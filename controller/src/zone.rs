@@ -245,6 +245,8 @@ fn segments<const P: usize>(
 type Polygon = Vec<Point, 12>;
 
 /// What of the two segments is occupied.
+// Not inlined, like `cut`: a microcontroller has no stack for all of their polygons at once.
+#[inline(never)]
 fn meet(a: &Segment, b: &Segment) -> Option<Patch> {
     let between = a.start - b.start;
     let reach = a.length + b.length + a.half.0 + a.half.1 + b.half.0 + b.half.1;
@@ -255,12 +257,11 @@ fn meet(a: &Segment, b: &Segment) -> Option<Patch> {
     for (axis, radius) in axes(a, b) {
         let (along, other_along) = (axis.dot(a.direction), -axis.dot(b.direction));
         let offset = axis.dot(between);
-        polygon = cut(&polygon, |p| {
-            radius - (offset + along * p.x + other_along * p.y)
-        });
-        polygon = cut(&polygon, |p| {
-            radius + (offset + along * p.x + other_along * p.y)
-        });
+        for side in [-1.0, 1.0] {
+            cut(&mut polygon, |p| {
+                radius + side * (offset + along * p.x + other_along * p.y)
+            });
+        }
     }
     bounds(a, b, &polygon)
 }
@@ -293,8 +294,9 @@ fn rectangle(width: f32, height: f32) -> Polygon {
     polygon
 }
 
-/// The part of a convex polygon in which `inside` is not negative (Sutherland and Hodgman, 1974).
-fn cut(polygon: &Polygon, inside: impl Fn(Point) -> f32) -> Polygon {
+/// Leaves the part of a convex polygon in which `inside` is not negative (Sutherland and Hodgman, 1974).
+#[inline(never)]
+fn cut(polygon: &mut Polygon, inside: impl Fn(Point) -> f32) {
     let mut kept = Polygon::new();
     // A cut by a line adds at most one corner, and 4 + 8 fit in the capacity: `push` never fails.
     let mut keep = |p| {
@@ -310,7 +312,7 @@ fn cut(polygon: &Polygon, inside: impl Fn(Point) -> f32) -> Polygon {
             keep(p + (q - p) * (at_p / (at_p - at_q)));
         }
     }
-    kept
+    *polygon = kept;
 }
 
 fn bounds(a: &Segment, b: &Segment, polygon: &Polygon) -> Option<Patch> {

@@ -13,9 +13,8 @@ pub use answer::{ANSWER, answer};
 
 use cede_controller::{
     Contract, Controller, Footprint, Observation, Part, Path, Point, Policy, Pose, RightOfWay,
-    Route, Scene, Vehicle,
+    Route, RouteError, Scene, SceneError, Vehicle,
 };
-use heapless::Vec;
 
 /// Others in a scene, at most.
 pub const OTHERS: usize = 8;
@@ -51,29 +50,34 @@ impl<'a> Golden<'a> {
         })
     }
 
-    /// The scene; `None` if the routes make none.
-    #[must_use]
-    pub fn scene(&self) -> Option<Scene<OTHERS>> {
-        let (mine, theirs) = self.routes.split_first()?;
-        let ego = route(mine)?;
-        let mut routes = Vec::<Route<POINTS>, OTHERS>::new();
-        for words in theirs {
-            routes.push(route(words)?).ok()?;
-        }
-        let mut others = Vec::<Path<'_, POINTS>, OTHERS>::new();
-        for (words, route) in theirs.iter().zip(&routes) {
-            others.push(path(words, route)).ok()?;
-        }
-        let mut scene = Scene::new(path(mine, &ego), &others).ok();
-        for (i, [_, _, right_of_way, ..]) in theirs.iter().enumerate() {
+    /// The scene, with nobody's right of way: see [`Golden::settle`]. It is the result of one call, so that
+    /// it is made where it is to be and needs its room once.
+    ///
+    /// # Errors
+    /// If the routes make none.
+    pub fn scene(&self) -> Result<Scene<OTHERS>, SceneError> {
+        let Some((mine, theirs)) = self.routes.split_first() else {
+            return Err(SceneError::Others);
+        };
+        let Ok(route) = &route(mine) else {
+            return Err(SceneError::Others);
+        };
+        let footprint = footprint(mine);
+        let ego = Path { route, footprint };
+        let others = theirs.iter().map_while(other);
+        Scene::gather(ego, others)
+    }
+
+    /// Says in `scene` who goes first.
+    pub fn settle(&self, scene: &mut Scene<OTHERS>) {
+        for (i, [_, _, right_of_way, ..]) in self.routes.iter().skip(1).enumerate() {
             let right_of_way = match right_of_way {
                 1 => RightOfWay::Ego,
                 2 => RightOfWay::Other,
                 _ => RightOfWay::Unsettled,
             };
-            scene.as_mut()?.set_right_of_way(i, right_of_way);
+            scene.set_right_of_way(i, right_of_way);
         }
-        scene
     }
 }
 
@@ -84,18 +88,23 @@ pub fn controller<'w>(policy: &Policy<'w>) -> Option<Controller<'w, OTHERS>> {
     Controller::new(*policy, Contract::WORST_CASE, Part::Left).ok()
 }
 
-fn route(words: &[u32; ROUTE]) -> Option<Route<POINTS>> {
-    let [_, _, _, count, points @ ..] = words;
-    let points = points.as_chunks().0;
-    let points = points.get(..usize::try_from(*count).ok()?)?;
-    Route::new(points.iter().map(|[x, y]| point(*x, *y))).ok()
+fn other(words: &[u32; ROUTE]) -> Option<(Route<POINTS>, Footprint)> {
+    let route = route(words).ok()?;
+    Some((route, footprint(words)))
 }
 
-fn path<'a>(words: &[u32; ROUTE], route: &'a Route<POINTS>) -> Path<'a, POINTS> {
-    let [length, width, ..] = words.map(f32::from_bits);
-    Path {
-        route,
-        footprint: Footprint { length, width },
+#[inline(never)]
+fn route(words: &[u32; ROUTE]) -> Result<Route<POINTS>, RouteError> {
+    let [_, _, _, count, points @ ..] = words;
+    let count = usize::try_from(*count).unwrap_or(POINTS);
+    let points = points.as_chunks().0.iter().take(count);
+    Route::new(points.map(|[x, y]| point(*x, *y)))
+}
+
+fn footprint([length, width, ..]: &[u32; ROUTE]) -> Footprint {
+    Footprint {
+        length: f32::from_bits(*length),
+        width: f32::from_bits(*width),
     }
 }
 

@@ -10,7 +10,7 @@ mod counter;
 mod stack;
 
 use cede_controller::weights::Aligned;
-use cede_controller::{Controller, Decision, Mlp, Policy, Scene, include_weights};
+use cede_controller::{Controller, Decision, Mlp, Policy, Scene, SceneError, embedded};
 use cede_golden::{Golden, OTHERS, QUESTION, answer, controller, observation};
 use cortex_m_rt::entry;
 use cortex_m_semihosting::debug;
@@ -29,7 +29,9 @@ fn main() -> ! {
             debug::EXIT_FAILURE
         }
     });
-    loop {}
+    loop {
+        cortex_m::asm::wfi();
+    }
 }
 
 /// What is measured on the way.
@@ -45,7 +47,7 @@ struct Tally {
 }
 
 fn run() -> Result<(), &'static str> {
-    let weights = include_weights!(concat!(env!("CEDE_GOLDEN"), "/policy.cede"));
+    let weights = embedded::words();
     let policy = Policy::new(weights).map_err(|_| "the weights file is damaged")?;
     planted::fault(weights);
 
@@ -72,9 +74,21 @@ fn run() -> Result<(), &'static str> {
 impl Tally {
     fn drive(&mut self, policy: &Policy<'_>, golden: &Golden<'_>) -> Option<()> {
         stack::paint();
-        let scene = scene(golden);
-        let scene = scene.as_ref()?;
+        let mut scene = scene(golden);
+        let scene = scene.as_mut().ok()?;
+        golden.settle(scene);
         self.preparing = self.preparing.max(stack::touched());
+        self.decide(policy, golden, scene)
+    }
+
+    /// Not inlined, so that the controller has its place only when there is one.
+    #[inline(never)]
+    fn decide(
+        &mut self,
+        policy: &Policy<'_>,
+        golden: &Golden<'_>,
+        scene: &Scene<OTHERS>,
+    ) -> Option<()> {
         let mut controller = controller(policy);
         let controller = controller.as_mut()?;
         stack::paint();
@@ -131,7 +145,7 @@ fn network(counter: &mut Counter, weights: &[u32]) -> Option<Range> {
 
 /// Not inlined, so that its frame is gone when a decision is made.
 #[inline(never)]
-fn scene(golden: &Golden<'_>) -> Option<Scene<OTHERS>> {
+fn scene(golden: &Golden<'_>) -> Result<Scene<OTHERS>, SceneError> {
     golden.scene()
 }
 
