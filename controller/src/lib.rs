@@ -4,6 +4,59 @@
 //! throughout (m, s, rad, m/s, m/s²); headings counter-clockwise from +x; arc
 //! length `s` along a [`Route`]; a vehicle's reference point is the centre of
 //! its footprint.
+//!
+//! # On an ECU
+//!
+//! At start-up, [`Policy::new`] checks the weights where they lie in flash. For each intersection,
+//! [`Scene::new`] prepares the geometry ([`Scene::gather`], where memory is short). Every 100 ms,
+//! [`Controller::decide`] turns what is sensed into an acceleration, and says why. What must hold for its
+//! guarantee is in the [`Contract`]: put your vehicle's numbers there.
+//!
+//! ```
+//! use cede_controller::{
+//!     Cause, Contract, Controller, Footprint, Observation, Part, Path, Point, Policy, Route, Scene, Vehicle,
+//! };
+//!
+//! // From the map, in metres: the ego turns left, the oncoming vehicle goes straight on.
+//! let mine = Route::<8>::new(
+//!     [(-40.0, -2.0), (-6.0, -2.0), (0.0, 0.0), (2.0, 6.0), (2.0, 40.0)].map(|(x, y)| Point::new(x, y)),
+//! )?;
+//! let theirs = Route::<8>::new([(40.0, 2.0), (-40.0, 2.0)].map(|(x, y)| Point::new(x, y)))?;
+//! let path = |route| Path { route, footprint: Footprint { length: 4.6, width: 1.9 } };
+//! let scene = Scene::<8>::new(path(&mine), &[path(&theirs)])?;
+//!
+//! // The policy that ships, or `include_weights!("own.cede")`; and this vehicle's brakes.
+//! let policy = Policy::new(cede_controller::embedded::words())?;
+//! let mut contract = Contract::WORST_CASE;
+//! contract.ego.braking = 4.0;
+//! let mut controller = Controller::<8>::new(policy, contract, Part::Left)?;
+//!
+//! // Every 100 ms, from localisation and tracking: arc length and speed along the route, and the pose.
+//! let sensed = |route: &Route<8>, s: f32, speed: f32| Vehicle { s, speed, pose: route.pose(s) };
+//! let mut others = [None; 8];
+//! others[0] = Some(sensed(&theirs, 20.0, 8.0)); // the order is that of the scene
+//! let seen = Observation { ego: sensed(&mine, 15.0, 6.0), others };
+//! let decision = controller.decide(&scene, &seen);
+//!
+//! let command = decision.acceleration; // m/s², to the longitudinal actuator
+//! assert!((-4.0..=3.0).contains(&command));
+//! match decision.cause {
+//!     Cause::Policy => {}
+//!     // The decision displays as a line for the log: "shielded: other 0 may arrive in 1.3 s, …".
+//!     Cause::Shielded(_) | Cause::Fallback(_) => { /* log(format_args!("{decision}")) */ }
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Modules
+//!
+//! | | |
+//! |---|---|
+//! | [`route`], [`scene`], [`zone`] | where vehicles go, and where they can touch |
+//! | [`observation`], [`decision`] | what goes in, what comes out, what can be wrong |
+//! | [`pair`], [`features`], [`svo`], [`mlp`], [`weights`], [`policy`], [`embedded`] | from two vehicles to a proposal |
+//! | [`shield`] | from a proposal to what is safe |
+//! | [`controller`] | all of it together |
 #![no_std]
 #![forbid(unsafe_code)]
 

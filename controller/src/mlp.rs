@@ -39,6 +39,8 @@ pub struct Dense<'a> {
 
 impl<'a> Mlp<'a> {
     /// Number of words that a network of this shape takes: layer by layer the biases, then the columns.
+    ///
+    /// Cost: constant. Overflows, as `usize` does, for sizes beyond [`MAX_WIDTH`] by far.
     #[must_use]
     pub const fn words(inputs: usize, width: usize) -> usize {
         (inputs + 1) * width + 2 * (width + 1) * width + (width + 1) * OUTPUTS
@@ -46,6 +48,8 @@ impl<'a> Mlp<'a> {
 
     /// A network over `words` (bit patterns of `f32`), or `None` if their number does not fit the shape,
     /// if `width` is not a multiple of [`LANES`] up to [`MAX_WIDTH`], or if there are no inputs or more than that.
+    ///
+    /// Cost: constant. Never panics.
     #[must_use]
     pub fn new(words: &'a [u32], inputs: usize, width: usize) -> Option<Self> {
         let shape_fits = (LANES..=MAX_WIDTH).contains(&width)
@@ -65,12 +69,16 @@ impl<'a> Mlp<'a> {
     }
 
     /// Width of the hidden layers.
+    ///
+    /// Cost: constant. Never panics.
     #[must_use]
     pub fn width(&self) -> usize {
         self.output.columns.len() / OUTPUTS
     }
 
     /// The four layers, from the inputs to the outputs; ReLU follows all but the last.
+    ///
+    /// Cost: constant. Never panics.
     #[must_use]
     pub const fn layers(&self) -> [Dense<'a>; 4] {
         let [first, second, third] = self.hidden;
@@ -105,11 +113,15 @@ impl<'a> Mlp<'a> {
 
 impl<'a> Dense<'a> {
     /// The bias of each neuron.
+    ///
+    /// Cost: O(neurons) to go through. Never panics.
     pub fn biases(&self) -> impl ExactSizeIterator<Item = f32> + use<'a> {
         self.biases.iter().map(|&word| f32::from_bits(word))
     }
 
     /// The weights, input by input: those of input 0 for each neuron, then those of input 1, …
+    ///
+    /// Cost: O(weights) to go through. Never panics.
     pub fn weights(&self) -> impl ExactSizeIterator<Item = f32> + use<'a> {
         self.columns.iter().map(|&word| f32::from_bits(word))
     }

@@ -83,6 +83,8 @@ pub struct Pair {
 
 impl Pair {
     /// The same pair as the other vehicle sees it. Its own inverse, but for the rounding of the SVO.
+    ///
+    /// Cost: constant. Never panics.
     #[must_use]
     pub fn swapped(&self) -> Self {
         Self {
@@ -103,6 +105,8 @@ impl Pair {
     }
 
     /// The ego's SVO now, in radians, in [0, π/2]. See [`crate::svo::svo`].
+    ///
+    /// Cost: constant. Never panics.
     #[must_use]
     pub fn svo(&self) -> f32 {
         let (ego, other) = (&self.ego, &self.other);

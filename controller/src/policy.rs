@@ -25,6 +25,8 @@ impl<'a> Policy<'a> {
     }
 
     /// The weights file.
+    ///
+    /// Cost: constant. Never panics.
     #[must_use]
     pub const fn weights(&self) -> &Weights<'a> {
         &self.weights
@@ -49,6 +51,8 @@ impl<'a> Policy<'a> {
 
     /// The network's inputs for `pair`: the normalised features, each within ± [`LIMIT`], then zeros. Those of
     /// a [`Perspective::Joint`] policy are the left-turner's, whoever the ego is.
+    ///
+    /// Cost: the features. Never panics; finite and within ± [`LIMIT`] for any `pair` whatsoever.
     // Not inlined, because its stack is free again when the network needs its own.
     #[must_use]
     #[inline(never)]

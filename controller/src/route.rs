@@ -85,18 +85,24 @@ impl<const P: usize> Route<P> {
     }
 
     /// Length in metres; always positive.
+    ///
+    /// Cost: constant. Never panics.
     #[must_use]
     pub fn length(&self) -> f32 {
         self.arc.last().copied().unwrap_or(0.0)
     }
 
     /// The points of the polyline, at least two.
+    ///
+    /// Cost: constant. Never panics.
     #[must_use]
     pub fn points(&self) -> &[Point] {
         &self.points
     }
 
     /// The arc length (m) at each of [`Route::points`].
+    ///
+    /// Cost: constant. Never panics.
     #[must_use]
     pub fn arc(&self) -> &[f32] {
         &self.arc

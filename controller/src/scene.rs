@@ -64,6 +64,8 @@ pub struct Meeting {
 
 impl Meeting {
     /// Where the footprints can touch; at most [`crate::zone::MAX_ZONES`], in no particular order.
+    ///
+    /// Cost: constant. Never panics.
     pub fn zones(&self) -> impl Iterator<Item = &Zone> {
         self.zones.iter().flatten()
     }
@@ -166,6 +168,8 @@ impl<const N: usize> Scene<N> {
     }
 
     /// How the ego's route meets each other's.
+    ///
+    /// Cost: constant. Never panics.
     #[must_use]
     pub fn meetings(&self) -> &[Meeting] {
         &self.meetings
@@ -177,18 +181,24 @@ impl<const N: usize> Scene<N> {
     }
 
     /// The ego's footprint.
+    ///
+    /// Cost: constant. Never panics.
     #[must_use]
     pub const fn footprint(&self) -> Footprint {
         self.footprint
     }
 
     /// Unit vector in which the ego's route ends.
+    ///
+    /// Cost: constant. Never panics.
     #[must_use]
     pub const fn exit(&self) -> Point {
         self.exit
     }
 
     /// Says who goes first if the ego and other number `other` arrive at once; no effect if there is none.
+    ///
+    /// Cost: constant. Never panics.
     pub fn set_right_of_way(&mut self, other: usize, right_of_way: RightOfWay) {
         if let Some(meeting) = self.meetings.get_mut(other) {
             meeting.right_of_way = right_of_way;

@@ -43,6 +43,8 @@ impl Surroundings {
     }
 
     /// The nearer of the two leaders and of the two crossers.
+    ///
+    /// Cost: constant. Never panics.
     #[must_use]
     pub fn nearest(self, other: Self) -> Self {
         let leader = match (self.leader, other.leader) {

@@ -130,6 +130,8 @@ impl<'a> Weights<'a> {
     }
 
     /// SHA-256 of what the network was made from.
+    ///
+    /// Cost: constant. Never panics.
     #[must_use]
     pub fn provenance(&self) -> [u8; 32] {
         let mut bytes = [0; 32];
@@ -140,6 +142,8 @@ impl<'a> Weights<'a> {
     }
 
     /// Centre and scale of each feature: the network sees (feature − centre) · scale.
+    ///
+    /// Cost: O(features) to go through. Never panics.
     pub fn normalisation(&self) -> impl Iterator<Item = (f32, f32)> + use<'a> {
         let float = |&word: &u32| f32::from_bits(word);
         self.centres

@@ -66,6 +66,8 @@ impl Interval {
     }
 
     /// Whether `value` is in the interval, ends included.
+    ///
+    /// Cost: constant. Never panics.
     #[must_use]
     pub fn contains(self, value: f32) -> bool {
         self.from <= value && value <= self.to
@@ -93,6 +95,8 @@ pub struct Zone {
 
 impl Zone {
     /// The same zone as the other vehicle sees it.
+    ///
+    /// Cost: constant. Never panics.
     #[must_use]
     pub fn swapped(&self) -> Self {
         Self {
@@ -107,6 +111,8 @@ impl Zone {
     }
 
     /// Whether both vehicles run along one lane in it.
+    ///
+    /// Cost: constant. Never panics.
     #[must_use]
     pub fn is_lane(&self) -> bool {
         matches!(self.kind, ConflictKind::Merging | ConflictKind::Following)

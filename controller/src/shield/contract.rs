@@ -70,8 +70,8 @@ pub struct Follower {
 pub struct Precedence {
     /// Metres before the zone at which a vehicle has arrived, in (0, 200].
     pub distance: f32,
-    /// Arrivals within this many periods of each other are a tie. If they are one period further
-    /// apart, nobody has precedence: the two vehicles may count differently.
+    /// Arrivals within this many periods of each other are a tie. If the one without the right of way
+    /// came one period more before the other, nobody has precedence: the two may count differently.
     pub tie: u16,
     /// Braking in m/s², in (0, 20], with which the other is expected to stop.
     pub braking: f32,

@@ -45,11 +45,6 @@ pub enum Passage {
         /// The other's speed, at most, in m/s.
         speed: f32,
     },
-    /// Any time: the ego has precedence, and the other can still stop.
-    Granted {
-        /// Metres between the other's stop and its zone.
-        margin: f32,
-    },
     /// Not as long as the other is where it is: the ego is behind it in one lane, or meets it head-on.
     Never,
 }
@@ -66,8 +61,8 @@ impl Hazards {
         Self { sorted: Vec::new() }
     }
 
-    /// Adds the hazards of what is seen, with the rule of precedence applied. In place, because they
-    /// are the largest thing on the stack.
+    /// Adds the hazards of what is seen, but for those that the rule of precedence takes away. In place,
+    /// because they are the largest thing on the stack.
     ///
     /// Cost: O(zones²) for the sorting, at most 24². Never panics.
     pub(crate) fn add<const N: usize, R: Rules>(
@@ -82,14 +77,12 @@ impl Hazards {
             let Some(other) = other else { continue };
             for zone in meeting.zones() {
                 if let Some(hazard) = hazard::<R>(contract, zone, &seen.ego, other) {
-                    let claimed = claims.has(number);
+                    let vehicles = (&seen.ego, other);
+                    if claims.has(number) && granted(contract, hazard.passage, zone, vehicles) {
+                        continue;
+                    }
                     self.insert::<R>(Hazard {
                         other: number,
-                        passage: if claimed {
-                            granted(contract, hazard.passage, zone, (&seen.ego, other))
-                        } else {
-                            hazard.passage
-                        },
                         ..hazard
                     });
                 }
@@ -191,7 +184,8 @@ fn behind<R: Rules>(contract: &Contract, gap: f32, other: &Vehicle) -> f32 {
     gap + R::earliest_rest(contract, if speed > 0.0 { speed } else { 0.0 })
 }
 
-/// The passage of a zone in which the ego has precedence: free, if the other can still stop before it.
+/// Whether a zone in which the ego has precedence is no hazard: the other can still stop before it, and
+/// stays out of it for as long as the ego likes. The ego may even wait in it.
 ///
 /// Into a lane only if the ego is too near for the other to enter ahead of it: one that has
 /// planned to do so, with a safe gap, need not stop, and the ego must then be able to.
@@ -200,22 +194,17 @@ fn granted(
     passage: Passage,
     zone: &Zone,
     (ego, other): (&Vehicle, &Vehicle),
-) -> Passage {
+) -> bool {
     let Some(rule) = contract.precedence else {
-        return passage;
+        return false;
     };
     let error = contract.position_error;
     let settled = match passage {
         Passage::Before { .. } => true,
         Passage::Ahead { .. } => ego.s - error - zone.other.from > zone.lead.from,
-        Passage::Granted { .. } | Passage::Never => false,
+        Passage::Never => false,
     };
     let speed = other.speed + contract.speed_error;
     let stops = other.s + error + speed * speed / (2.0 * rule.braking);
-    let margin = zone.other.from - stops;
-    if settled && margin >= 0.0 {
-        Passage::Granted { margin }
-    } else {
-        passage
-    }
+    settled && zone.other.from >= stops
 }

@@ -287,7 +287,7 @@ impl<const N: usize, R: Rules> Shield<N, R> {
                         needs: R::safe_gap(contract, rush.speed, ego_speed),
                     }
                 }
-                Passage::Granted { .. } | Passage::Never => stop,
+                Passage::Never => stop,
             };
         }
         stop

@@ -20,6 +20,8 @@ pub struct Plan {
 
 impl Plan {
     /// What is left of the plan after one period.
+    ///
+    /// Cost: constant. Never panics.
     #[must_use]
     pub const fn tail(self) -> Self {
         Self {
@@ -88,7 +90,6 @@ pub(crate) fn passage_margin<R: Rules>(
             let needed = R::safe_gap(contract, rush.speed, ego_speed);
             margin::enters_ahead(contract, gap, rush, needed)
         }
-        Passage::Granted { margin } => margin,
         Passage::Never => -FAR,
     }
 }

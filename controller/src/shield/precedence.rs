@@ -90,11 +90,13 @@ fn precedes(
     right_of_way: RightOfWay,
 ) -> bool {
     let Some(ego) = ego else { return false };
+    // An other that has not arrived yet arrives now at the earliest.
+    let other = other.unwrap_or(now);
     let tie = u32::from(tie);
-    match other {
-        Some(other) if ego.abs_diff(other) <= tie => right_of_way == RightOfWay::Ego,
-        // An other that has not arrived yet arrives now at the earliest.
-        _ => other.unwrap_or(now).saturating_sub(ego) > tie + 1,
+    match right_of_way {
+        RightOfWay::Ego => ego <= other.saturating_add(tie),
+        // The other, if it has the right of way, may count one period less between the two arrivals.
+        _ => other.saturating_sub(ego) > tie + 1,
     }
 }
 
@@ -113,8 +115,9 @@ mod tests {
         assert!(!first((Some(10), Some(12)), Unsettled));
         assert!(first((Some(10), None), Unsettled));
         assert!(!first((None, None), Ego));
-        // One period beyond a tie belongs to nobody.
-        assert!(!first((Some(10), Some(16)), Ego) && !first((Some(16), Some(10)), Ego));
+        // One period beyond a tie is the right of way's if it came first, and nobody's if it came second.
+        assert!(first((Some(10), Some(16)), Ego) && !first((Some(16), Some(10)), Other));
+        assert!(!first((Some(16), Some(10)), Ego) && !first((Some(10), Some(16)), Other));
     }
 
     proptest! {

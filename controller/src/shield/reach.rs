@@ -16,6 +16,8 @@ pub struct Reach<R> {
 
 impl<R: Real> Reach<R> {
     /// Nowhere yet, at `speed`.
+    ///
+    /// Cost: constant. Never panics.
     pub fn start(speed: R) -> Self {
         let (distance, zero) = (R::of(0.0), R::of(0.0));
         Self {
@@ -27,6 +29,8 @@ impl<R: Real> Reach<R> {
     /// At most as far and as fast as this after `time` more at `acceleration`, of either sign.
     ///
     /// Exact, but for a vehicle that comes to rest on the way: that one stops no later.
+    ///
+    /// Cost: constant. Never panics.
     #[must_use]
     pub fn at_most(self, acceleration: R, time: R) -> Self {
         let speed = (self.speed + acceleration * time).max(R::of(0.0));
@@ -39,6 +43,8 @@ impl<R: Real> Reach<R> {
     /// At least as far and as fast as this after `time` more at `acceleration`, of either sign.
     ///
     /// Exact, but for a vehicle that comes to rest on the way: that one stops no earlier.
+    ///
+    /// Cost: constant. Never panics.
     #[must_use]
     pub fn at_least(self, acceleration: R, time: R) -> Self {
         let step = (self.speed + acceleration * time * R::of(0.5)) * time;
@@ -50,6 +56,8 @@ impl<R: Real> Reach<R> {
 
     /// After `time` more at `acceleration` > 0 up to the speed `cap`, which is then kept;
     /// a vehicle that is faster already keeps its speed.
+    ///
+    /// Cost: constant. Never panics.
     #[must_use]
     pub fn rushing(self, acceleration: R, cap: R, time: R) -> Self {
         let cap = cap.max(self.speed);
@@ -62,6 +70,8 @@ impl<R: Real> Reach<R> {
     }
 
     /// Where a vehicle that brakes at `braking` > 0 from here comes to rest.
+    ///
+    /// Cost: constant. Never panics.
     #[must_use]
     pub fn rest(self, braking: R) -> R {
         self.distance + self.speed * self.speed / (braking + braking)
@@ -69,6 +79,8 @@ impl<R: Real> Reach<R> {
 
     /// The time (s) that it takes from here at `acceleration` > 0, up to the speed `cap` > 0, until the
     /// distance is `target`, and the speed then. No time if it is there already.
+    ///
+    /// Cost: constant. Never panics.
     #[must_use]
     pub fn until(self, target: R, acceleration: R, cap: R) -> (R, R) {
         let left = (target - self.distance).max(R::of(0.0));

@@ -57,7 +57,11 @@ fn seen(ego: Vehicle, other: Vehicle) -> Observation<2> {
 }
 
 fn margin(scene: &Scene<2>, ego: Vehicle, other: Vehicle, acceleration: f32) -> f32 {
-    let shield = Shield::<2>::new(WORST).unwrap();
+    margin_by::<Sound>(scene, ego, other, acceleration)
+}
+
+fn margin_by<R: Rules>(scene: &Scene<2>, ego: Vehicle, other: Vehicle, acceleration: f32) -> f32 {
+    let shield = Shield::<2, R>::with_rules(WORST).unwrap();
     shield
         .margin(scene, &seen(ego, other), 0.0, acceleration)
         .unwrap()
@@ -213,12 +217,57 @@ fn precedence_into_a_lane_is_granted_only_where_the_other_cannot_enter_ahead() {
         let seen = seen(vehicle(ego, 0.0), vehicle(zone.other.from - 1.0, 0.0));
         let mut hazards = Hazards::new();
         hazards.add::<2, Sound>(&contract, &scene, &seen, claims);
-        hazards.iter().next().unwrap().passage
+        hazards.iter().next().map(|hazard| hazard.passage)
     };
     let line = zone.other.from + zone.lead.from;
     assert!(line < zone.ego.from);
-    assert!(matches!(passage(line - 0.1), Passage::Ahead { .. }));
-    assert!(matches!(passage(line + 0.1), Passage::Granted { .. }));
+    assert!(matches!(passage(line - 0.1), Some(Passage::Ahead { .. })));
+    assert_eq!(passage(line + 0.1), None);
+}
+
+/// Once the ego had to clear also the zones in which it had precedence: it waited before a crossing
+/// for a lane behind it to become free, and others waited for it.
+#[test]
+fn an_ego_with_precedence_may_wait_in_the_zone() {
+    let scene = Scene::<2>::new(path(&east()), &[path(&north())]).unwrap();
+    let zone = *scene.meetings()[0].zones().next().unwrap();
+    let inside = seen(
+        vehicle(zone.ego.from + 2.0, 0.0),
+        vehicle(zone.other.from - 0.1, 0.0),
+    );
+    let mut claims = Claims::default();
+    claims.claim(0);
+    let mut hazards = Hazards::new();
+    hazards.add::<2, Sound>(&Contract::ALL_WAY_STOP, &scene, &inside, claims);
+    assert_eq!(hazards.iter().count(), 0);
+    hazards.add::<2, Sound>(&WORST, &scene, &inside, Claims::default());
+    assert_eq!(hazards.iter().count(), 1);
+}
+
+/// Whether the ego is allowed more at a merge by an other that is `worse` than `other`, though it cannot
+/// come to rest ahead of where the ego would enter.
+fn gains_at_a_merge<R: Rules>(ego: Vehicle, other: Vehicle, worse: Vehicle, a: f32) -> bool {
+    let scene = Scene::<2>::new(path(&east()), &[path(&ramp())]).unwrap();
+    let zone = *scene.meetings()[0].zones().next().unwrap();
+    assert!(zone.is_lane());
+    let rests = worse.s + margin::earliest_rest(&WORST, worse.speed) + zone.lead.from;
+    let [before, after] = [other, worse].map(|other| margin_by::<R>(&scene, ego, other, a));
+    rests <= zone.ego.from && after > before + 1e-4
+}
+
+/// Fears the slow more than the fast.
+struct Reversed;
+impl Rules for Reversed {
+    fn rush(contract: &Contract, speed: f32, time: f32) -> reach::Reach<f32> {
+        margin::rush(contract, 15.0 - speed, time)
+    }
+}
+
+#[test]
+fn a_shield_that_fears_the_slow_more_is_found_out_at_a_merge() {
+    let ego = vehicle(54.0, 8.0);
+    let gains = gains_at_a_merge::<Reversed>(ego, vehicle(20.0, 2.0), vehicle(20.0, 12.0), 0.0);
+    assert!(gains);
 }
 
 /// The scene and the contract in units of length that are `factor` times as long.
@@ -423,7 +472,20 @@ proptest! {
         prop_assert!(margin(&scene, ego, vehicle(other_s, other_v + faster), a) <= base + 1e-4);
     }
 
-    /// Nor does a nearer or slower leader, nor one who comes nearer or faster to a merge behind the ego.
+    /// Nor does one who comes nearer or faster to a merge, as long as it cannot come to rest ahead of
+    /// where the ego would enter: from there on it is a leader, behind whom there is more room the
+    /// farther and the faster it is.
+    #[test]
+    fn a_nearer_or_faster_other_at_a_merge_allows_no_more(
+        ego_s in 20.0_f32..70.0, ego_v in 0.0_f32..15.0, other_s in 0.0_f32..70.0,
+        other_v in 0.0_f32..15.0, nearer in 0.0_f32..10.0, faster in 0.0_f32..5.0, a in -3.0_f32..3.0,
+    ) {
+        let (ego, other) = (vehicle(ego_s, ego_v), vehicle(other_s, other_v));
+        prop_assert!(!gains_at_a_merge::<Sound>(ego, other, vehicle(other_s + nearer, other_v), a));
+        prop_assert!(!gains_at_a_merge::<Sound>(ego, other, vehicle(other_s, other_v + faster), a));
+    }
+
+    /// Nor does a nearer or slower leader.
     #[test]
     fn a_nearer_or_slower_leader_allows_no_more(
         ego_v in 0.0_f32..15.0, gap in 0.0_f32..40.0, leader_v in 0.0_f32..15.0,
