@@ -17,7 +17,7 @@ use comfy_table::{ContentArrangement, Table, presets};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Options of `cede reproduce`.
 #[derive(clap::Args)]
@@ -33,6 +33,9 @@ pub(crate) struct Args {
     /// Also train without each file in turn and judge on it: as many trainings more as there are files
     #[arg(long)]
     leave_one_file_out: bool,
+    /// Also judge on all encounters of this site, in the same folder, which nothing is fitted to
+    #[arg(long, value_name = "SITE")]
+    transfer: Option<String>,
     /// Folder for the weights and the rows of every seed
     #[arg(long, default_value = "out/reproduce", value_name = "DIR")]
     out: PathBuf,
@@ -46,12 +49,20 @@ fn named(name: &str) -> Result<Algorithm, String> {
     })
 }
 
+/// Without a shield, and with one of each contract; by their names in the table.
+const SHIELDS: [(&str, Option<Contract>); 3] = [
+    ("off", None),
+    ("all-way stop", Some(Contract::ALL_WAY_STOP)),
+    ("worst case", Some(Contract::WORST_CASE)),
+];
+
 /// One training and what it is judged on.
 struct Job<'d> {
     algorithm: Algorithm,
     seed: u64,
     training: Vec<&'d Encounter>,
-    judged: Vec<(Selection, Vec<&'d Encounter>)>,
+    /// Encounters by the name of what they are a selection of.
+    judged: Vec<(String, Vec<&'d Encounter>)>,
     /// The weights of this one are kept.
     keep: bool,
 }
@@ -68,7 +79,8 @@ struct Seeded {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     interrupt::defer();
     let dataset = args.source.load(1)?;
-    let jobs = args.jobs(&dataset);
+    let elsewhere = args.elsewhere()?;
+    let jobs = args.jobs(&dataset, elsewhere.as_ref());
     let bar = ProgressBar::new(jobs.len() as u64);
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} trainings, {eta} left") {
         bar.set_style(style);
@@ -96,7 +108,12 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 }
 
 impl Args {
-    fn jobs<'d>(&self, dataset: &'d Dataset) -> Vec<Job<'d>> {
+    fn elsewhere(&self) -> Result<Option<Dataset>, Failure> {
+        let load = |site| Dataset::load(Path::new(&self.source.data), site);
+        Ok(self.transfer.as_deref().map(load).transpose()?)
+    }
+
+    fn jobs<'d>(&self, dataset: &'d Dataset, elsewhere: Option<&'d Dataset>) -> Vec<Job<'d>> {
         let splits = [Split::Train, Split::Validation, Split::Test].map(Selection::Split);
         let mut jobs = Vec::new();
         for (&algorithm, seed) in self
@@ -106,13 +123,20 @@ impl Args {
         {
             let judged = splits.iter().flat_map(|&selection| {
                 let rounds = selection.rounds(dataset).into_iter();
-                rounds.map(move |round| (selection, round.judged))
+                rounds.map(move |round| (selection.name().to_owned(), round.judged))
+            });
+            let transferred = elsewhere.map(|site| {
+                let all = site.encounters.iter().collect();
+                (format!("{}, all", site.site.name), all)
             });
             jobs.push(Job {
                 algorithm,
                 seed,
                 training: dataset.split(Split::Train).collect(),
-                judged: judged.filter(|(_, judged)| !judged.is_empty()).collect(),
+                judged: judged
+                    .chain(transferred)
+                    .filter(|(_, judged)| !judged.is_empty())
+                    .collect(),
                 keep: true,
             });
             if !self.leave_one_file_out {
@@ -126,7 +150,10 @@ impl Args {
                         algorithm,
                         seed,
                         training: round.training,
-                        judged: vec![(Selection::LeaveOneFileOut, round.judged)],
+                        judged: vec![(
+                            Selection::LeaveOneFileOut.name().to_owned(),
+                            round.judged,
+                        )],
                         keep: false,
                     }),
             );
@@ -137,8 +164,9 @@ impl Args {
 
 /// What one driver did on one split, or on one file of it.
 struct Part<'d> {
-    shield: bool,
-    selection: Selection,
+    /// Which of [`SHIELDS`].
+    shield: usize,
+    split: String,
     algorithm: Algorithm,
     seed: u64,
     drives: Vec<Drive<'d>>,
@@ -146,10 +174,10 @@ struct Part<'d> {
 
 impl Part<'_> {
     /// What parts of one row have in common; rows are sorted by it.
-    fn row(&self) -> (bool, &'static str, &'static str, u64) {
+    fn row(&self) -> (usize, &str, &'static str, u64) {
         (
             self.shield,
-            self.selection.name(),
+            &self.split,
             self.algorithm.name(),
             self.seed,
         )
@@ -198,17 +226,17 @@ impl<'d> Job<'d> {
         }
         let policy = weights::keep(&words).map_err(diverged)?;
         let mut parts = Vec::new();
-        for (selection, judged) in &self.judged {
-            for shield in [false, true] {
+        for (split, judged) in &self.judged {
+            for (shield, (_, contract)) in SHIELDS.into_iter().enumerate() {
                 let protocol = Protocol {
                     mode: Mode::Joint,
                     until: Until::Conflict,
                     seed: self.seed,
                 };
-                let drives = evaluate(&*factory(policy, shield)?, judged, protocol);
+                let drives = evaluate(&*factory(policy, contract)?, judged, protocol);
                 parts.push(Part {
                     shield,
-                    selection: *selection,
+                    split: split.clone(),
                     algorithm: self.algorithm,
                     seed: self.seed,
                     drives,
@@ -219,11 +247,14 @@ impl<'d> Job<'d> {
     }
 }
 
-fn factory(policy: Policy<'static>, shield: bool) -> Result<Box<dyn DriverFactory>, Failure> {
-    if !shield {
+fn factory(
+    policy: Policy<'static>,
+    contract: Option<Contract>,
+) -> Result<Box<dyn DriverFactory>, Failure> {
+    let Some(contract) = contract else {
         return Ok(Box::new(PolicyAlone::new(policy)));
-    }
-    let cede = Cede::new(policy, Contract::ALL_WAY_STOP);
+    };
+    let cede = Cede::new(policy, contract);
     let cede = cede.map_err(|error| Failure::input(error, "report this as a bug"))?;
     Ok(Box::new(cede))
 }
@@ -239,10 +270,10 @@ fn gathered(mut parts: Vec<Part<'_>>) -> Vec<Seeded> {
         }
         let label = Label {
             driver: part.algorithm.name(),
-            split: part.selection.name(),
+            split: &part.split,
             mode: "joint",
             until: "conflict",
-            shield: if part.shield { "on" } else { "off" },
+            shield: SHIELDS[part.shield].0,
         };
         rows.push(Seeded {
             seed: part.seed,
@@ -267,6 +298,7 @@ fn render(rows: &[Seeded], paper: bool) -> String {
             "priority accuracy",
             "length error",
             "collisions a seed",
+            "time-outs a seed",
         ]);
     let group = |s: &Seeded| {
         (
@@ -290,6 +322,7 @@ fn render(rows: &[Seeded], paper: bool) -> String {
             spread(&percent, 1) + " %",
             spread(&over(|row| row.episode_length_error), 3),
             spread(&over(|row| Some(row.collisions as f64)), 1),
+            spread(&over(|row| Some(row.time_outs as f64)), 1),
         ]);
     }
     if paper {
@@ -303,6 +336,7 @@ fn render(rows: &[Seeded], paper: bool) -> String {
                 format!("{:.1} %", 100.0 * accuracy),
                 format!("{length:.3}"),
                 collisions.to_string(),
+                String::new(),
             ]);
         }
     }
