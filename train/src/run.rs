@@ -2,6 +2,7 @@
 
 use crate::apg::{self, Apg};
 use crate::bc::{self, Bc};
+use crate::closed_loop::Cost;
 use crate::episodes::{Course, Reward};
 use crate::learner::Rates;
 use crate::pilot::Pilot;
@@ -83,7 +84,28 @@ impl Algorithm {
                 },
                 ..settings
             }),
-            apg @ Settings::Apg(_) => apg,
+            // More updates fit the few recorded encounters better, and those held out worse.
+            Settings::Apg(settings) => Settings::Apg(apg::Settings {
+                updates: 600,
+                batch: 128,
+                carry_on: 0.7,
+                clip: 10.0,
+                cost: Cost {
+                    gap: 1.5,
+                    ..settings.cost
+                },
+                ..settings
+            }),
+        }
+    }
+
+    /// Networks that `cede reproduce` trains for one driver and puts side by side, so that it acts as
+    /// they do on average: which encounters a network misjudges has much to do with how it began.
+    #[must_use]
+    pub const fn members(self) -> u64 {
+        match self {
+            Self::Apg => 2,
+            _ => 1,
         }
     }
 }

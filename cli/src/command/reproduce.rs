@@ -11,6 +11,8 @@ use cede_sim::episode::Until;
 use cede_sim::evaluate::{Drive, Label, Mode, Protocol, Row, Selection, evaluate};
 use cede_sim::{Dataset, Encounter, Sight, output, weights};
 use cede_train::episodes::Course;
+use cede_train::network::Network;
+use cede_train::pilot::Pilot;
 use cede_train::provenance::{Provenance, data_hash};
 use cede_train::run::{Algorithm, Lessons, Run, Settings};
 use comfy_table::{ContentArrangement, Table, presets};
@@ -48,6 +50,9 @@ fn named(name: &str) -> Result<Algorithm, String> {
         format!("no row is called `{name}`; there are: {all}")
     })
 }
+
+/// From a member's seed to the next one's: more than anyone has seeds.
+const MEMBER: u64 = 1 << 32;
 
 /// Without a shield, and with one of each contract; by their names in the table.
 const SHIELDS: [(&str, Option<Contract>); 3] = [
@@ -150,10 +155,7 @@ impl Args {
                         algorithm,
                         seed,
                         training: round.training,
-                        judged: vec![(
-                            Selection::LeaveOneFileOut.name().to_owned(),
-                            round.judged,
-                        )],
+                        judged: vec![(Selection::LeaveOneFileOut.name().to_owned(), round.judged)],
                         keep: false,
                     }),
             );
@@ -175,12 +177,7 @@ struct Part<'d> {
 impl Part<'_> {
     /// What parts of one row have in common; rows are sorted by it.
     fn row(&self) -> (usize, &str, &'static str, u64) {
-        (
-            self.shield,
-            &self.split,
-            self.algorithm.name(),
-            self.seed,
-        )
+        (self.shield, &self.split, self.algorithm.name(), self.seed)
     }
 }
 
@@ -205,17 +202,27 @@ impl<'d> Job<'d> {
             data_hash: data_hash(self.training.iter().copied(), ""),
             command: "cede reproduce".to_owned(),
         };
-        let mut run = Run::new(settings, &lessons, self.seed);
-        while run.advance().is_some() {
-            interrupt::check()?;
+        let mut members = Vec::new();
+        for member in 0..self.algorithm.members() {
+            // The first member is what `cede train` makes of this seed.
+            let mut run = Run::new(settings.clone(), &lessons, self.seed + member * MEMBER);
+            while run.advance().is_some() {
+                interrupt::check()?;
+            }
+            members.push(run);
         }
+        let networks: Vec<Network> = members.iter().map(|r| r.pilot().network.clone()).collect();
+        let pilot = Pilot {
+            network: &Network::mean(&networks),
+            ..members[0].pilot()
+        };
         let diverged = |error| {
             Failure::input(
                 format!("{}: {error}", self.algorithm.name()),
                 "try another seed",
             )
         };
-        let words = run.pilot().weights(provenance.hash()).map_err(diverged)?;
+        let words = pilot.weights(provenance.hash()).map_err(diverged)?;
         if self.keep {
             let name = format!("{}-{}.cede", self.algorithm.name(), self.seed);
             output::write(&args.out.join(name), |file| {
