@@ -86,7 +86,7 @@ impl Algorithm {
             }),
             // More updates fit the few recorded encounters better, and those held out worse.
             Settings::Apg(settings) => Settings::Apg(apg::Settings {
-                updates: 600,
+                updates: 400,
                 batch: 128,
                 carry_on: 0.7,
                 clip: 10.0,
