@@ -211,11 +211,16 @@ fn fits(setup: Setup, (route, start): &(Route<32>, State), placed: &[(Route<32>,
     })
 }
 
-/// Whether one who is behind `ego` in the lane of `zone` can still stop behind it.
+/// Whether one who is behind `ego` in the lane of `zone` can still stop behind it. Who is ahead is what a
+/// shield thinks, or may think with its sensing errors: two that begin side by side where lanes run
+/// together have no room.
 fn leaves_room(setup: Setup, zone: &Zone, ego: &State, other: &State) -> bool {
-    let gap = ego.s - other.s - zone.lead.to;
-    let ahead = zone.is_lane() && ego.s >= zone.ego.from && gap > -5.0;
-    !ahead || other.s > zone.other.to || gap >= safe_gap(&setup.contract, other.v, ego.v)
+    let contract = &setup.contract;
+    let (lead, error) = (ego.s - other.s, contract.position_error);
+    let middle = 0.5 * (zone.lead.from + zone.lead.to);
+    let entered = ego.s + 2.0 * error >= zone.ego.from && other.s <= zone.other.to;
+    let ahead = zone.is_lane() && entered && lead + 2.0 * error >= middle;
+    !ahead || lead - zone.lead.to >= safe_gap(contract, other.v, ego.v)
 }
 
 /// The arms of an intersection.
