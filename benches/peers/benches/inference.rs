@@ -33,6 +33,11 @@ fn runs(width: usize) -> Result<Vec<(&'static str, Run)>, Failure> {
 }
 
 fn inference(c: &mut Criterion<CpuTime>) {
+    // Without it candle counts the machine's cores before each product, at twenty times the cost.
+    assert!(
+        std::env::var_os("RAYON_NUM_THREADS").is_some_and(|n| n == "1"),
+        "set RAYON_NUM_THREADS=1, for a comparison on one thread"
+    );
     for width in [64, 128] {
         let mut runs = runs(width).expect("every peer builds the network");
         let expected = runs[0].1(&X).expect("Cede runs");

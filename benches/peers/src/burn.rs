@@ -30,7 +30,7 @@ pub fn burn(layers: &[Layer]) -> Result<Run, Failure> {
         }
         let outputs = x
             .into_data()
-            .to_vec::<f32>()
+            .try_to_vec::<f32>()
             .map_err(|error| format!("{error:?}"))?;
         outputs.try_into().map_err(|_| "not four outputs".into())
     }))
