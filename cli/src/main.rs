@@ -12,6 +12,7 @@ mod report;
 mod scene;
 mod source;
 mod table;
+mod training;
 
 use clap::Parser;
 use std::process::ExitCode;

@@ -15,10 +15,20 @@ use cede_controller::Contract;
 use cede_sim::data::Split;
 use cede_sim::evaluate::{Drive, Row};
 use cede_sim::{Dataset, Encounter, EncounterId, Role, output, transparency};
+use cede_train::curve::Point;
 use model::{Case, Episodes, Interventions, Page};
+use serde::Serialize;
 use std::collections::HashMap;
 use std::path::Path;
 use sweep::Panel;
+
+/// How one row's driver scored while it was trained.
+#[derive(Serialize)]
+pub(crate) struct Learned {
+    pub(crate) driver: &'static str,
+    pub(crate) seed: u64,
+    pub(crate) points: Vec<Point>,
+}
 
 const PAGE: &str = include_str!("report/page/page.html");
 const STYLE: &str = include_str!("report/page/style.css");
@@ -27,6 +37,7 @@ const SCRIPT: &str = concat!(
     include_str!("report/page/table.js"),
     include_str!("report/page/replay.js"),
     include_str!("report/page/sweep.js"),
+    include_str!("report/page/learning.js"),
     include_str!("report/page/page.js"),
 );
 
@@ -68,8 +79,9 @@ impl Report {
     /// Adds a row of the table, and what its episodes show.
     pub(crate) fn add(&mut self, row: &Row, drives: &[Drive<'_>]) {
         let driver = match row.shield.as_str() {
+            "off" => row.driver.clone(),
             "on" => format!("{} + shield", row.driver),
-            _ => row.driver.clone(),
+            contract => format!("{} + shield ({contract})", row.driver),
         };
         self.page.name(&driver);
         for drive in drives {
@@ -97,6 +109,12 @@ impl Report {
         // The contracts that can be named are in range.
         let rows = transparency::sweep(&encounters, contract).unwrap_or_default();
         self.page.sweep = Panel::all(&rows);
+    }
+
+    /// Adds learning curves.
+    pub(crate) fn learned(&mut self, curves: &[Learned]) {
+        let curve = |curve: &Learned| model::Curve::of(curve.driver, &curve.points);
+        self.page.learning.extend(curves.iter().map(curve));
     }
 
     /// Writes the page.

@@ -4,6 +4,7 @@
 //! (postcard), and a CRC-32 of all that. A file that is damaged, or that belongs
 //! to other data, is refused; writing replaces the last file only when the new one is whole.
 
+use crate::curve::Curve;
 use crate::run::Progress;
 use cede_sim::output::{self, OutputError};
 use crc::{CRC_32_ISO_HDLC, Crc};
@@ -27,6 +28,8 @@ pub struct Checkpoint {
     pub settings: String,
     /// The run.
     pub progress: Progress,
+    /// How its drivers scored on the way.
+    pub curve: Curve,
 }
 
 /// A checkpoint cannot be used.
@@ -99,17 +102,12 @@ impl Checkpoint {
 mod tests {
     use super::*;
     use crate::run::{Algorithm, Lessons, Run};
-    use cede_sim::{Dataset, Sight};
+    use cede_sim::{Dataset, Encounter};
 
     fn checkpoint() -> Checkpoint {
         let dataset = Dataset::synthetic(4, 4);
-        let sights: Vec<Sight<'_>> = dataset.encounters.iter().take(4).map(Sight::new).collect();
-        let lessons = Lessons {
-            courses: Vec::new(),
-            own: sights.len(),
-            claims: Vec::new(),
-            sights,
-        };
+        let encounters: Vec<&Encounter> = dataset.encounters.iter().take(4).collect();
+        let lessons = Lessons::new(&encounters, &[]);
         let settings = Algorithm::Bc
             .settings()
             .with(&"width = 16".parse().unwrap())
@@ -122,6 +120,7 @@ mod tests {
             seed: 1,
             settings: String::new(),
             progress: run.progress(),
+            curve: Curve::default(),
         }
     }
 

@@ -43,6 +43,14 @@ impl<'e> Course<'e> {
         let svo = sight.recorded().step_by(2).map(|pair| pair.svo()).collect();
         Self { sight, svo }
     }
+
+    /// r₁ in [0, 1] after `step` steps with the left-turner's `svo` (rad), on the way to the
+    /// conflict point.
+    #[must_use]
+    pub fn deviation(&self, step: usize, svo: f32) -> f32 {
+        let recorded = self.svo.get(step);
+        recorded.map_or(PAST_THE_RECORD, |recorded| svo_deviation(svo, *recorded))
+    }
 }
 
 /// An episode under way.
@@ -136,12 +144,7 @@ impl Episode {
         match reward {
             // The step at the conflict point itself is left out: there the SVO is pinned to an end.
             Reward::SacerSvo | Reward::Sac if arrived => 0.0,
-            Reward::SacerSvo | Reward::Sac => {
-                let recorded = course.svo.get(step);
-                recorded.map_or(PAST_THE_RECORD, |recorded| {
-                    svo_deviation(self.svo, *recorded)
-                })
-            }
+            Reward::SacerSvo | Reward::Sac => course.deviation(step, self.svo),
             Reward::SacerV => {
                 if step > course.sight.encounter.steps as usize {
                     return PAST_THE_RECORD;

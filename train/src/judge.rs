@@ -1,13 +1,17 @@
-//! A quick judgement in the paper's protocol, for progress and early stopping; `cede_sim` has the last word.
+//! A quick judgement in the paper's protocol, for learning curves; `cede_sim` has the last word.
 
+use crate::episodes::Course;
+use crate::network::Tape;
+use crate::pilot::Pilot;
 use cede_controller::{Footprint, Pair};
-use cede_sim::Sight;
 use cede_sim::kinematics::advance;
 use cede_sim::overlap::OrientedBox;
-use cede_sim::{Role, State};
+use cede_sim::reward::{COLLISION, EpisodeLength};
+use cede_sim::{Role, Sight, State};
+use serde::{Deserialize, Serialize};
 
-/// The paper's three figures.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// The paper's three figures, and its reward.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Score {
     /// Episodes.
     pub n: usize,
@@ -19,90 +23,195 @@ pub struct Score {
     pub collisions: usize,
     /// Episodes that ran out of time.
     pub time_outs: usize,
+    /// SACER-SVO's reward a step, whatever the driver was trained with: mean of the episodes' means.
+    pub reward: f32,
 }
 
-/// Drives every encounter from its start in joint mode until its end.
+/// Lets `pilot` drive every encounter from its start in joint mode until its end.
 #[must_use]
-pub fn judge(sights: &[Sight<'_>], mut drive: impl FnMut(&[[Pair; 2]]) -> Vec<[f32; 2]>) -> Score {
-    let mut running: Vec<Running> = (0..sights.len())
-        .map(|i| Running::new(i, &sights[i]))
-        .collect();
+pub fn judge(courses: &[Course<'_>], pilot: Pilot<'_>) -> Score {
+    let mut tape = Tape::default();
+    drive(courses, |pairs| pilot.drive(pairs, &mut tape))
+}
+
+fn drive(courses: &[Course<'_>], mut act: impl FnMut(&[[Pair; 2]]) -> Vec<[f32; 2]>) -> Score {
+    let mut running: Vec<Running<'_>> = courses.iter().map(Running::new).collect();
     let mut score = Score {
-        n: sights.len(),
+        n: courses.len(),
         ..Score::default()
     };
     let mut step = 0;
     while !running.is_empty() {
-        let pairs: Vec<_> = running.iter_mut().map(|r| r.see(sights, step)).collect();
-        let commands = drive(&pairs);
+        let pairs: Vec<_> = running.iter().map(|r| r.seen).collect();
         step += 1;
-        for (r, command) in running.iter_mut().zip(commands) {
-            r.states = [0, 1].map(|i| advance(r.states[i], command[i]));
+        for (r, command) in running.iter_mut().zip(act(&pairs)) {
+            r.advance(step, command);
         }
-        running.retain(|r| !r.ends(sights, step, &mut score));
+        running.retain(|r| !r.ends(step, &mut score));
     }
-    let n = sights.len().max(1) as f32;
+    let n = courses.len().max(1) as f32;
     score.priority_accuracy /= n;
     score.length_error /= n;
+    score.reward /= n;
     score
 }
 
-struct Running {
-    encounter: usize,
+struct Running<'c> {
+    course: &'c Course<'c>,
     states: [State; 2],
-    svo: f32,
+    seen: [Pair; 2],
+    /// Sum of what the steps have earned at once.
+    earned: f32,
+    /// Sum of both speeds over the steps.
+    speeds: f32,
 }
 
-impl Running {
-    fn new(encounter: usize, sight: &Sight<'_>) -> Self {
-        let state = |i: usize| {
-            let sample = sight.encounter.participants[i].record[0];
-            State {
+impl<'c> Running<'c> {
+    fn new(course: &'c Course<'c>) -> Self {
+        let states = [0, 1].map(|i| {
+            let first = course.sight.encounter.participants[i].record.first();
+            first.map_or_else(State::default, |sample| State {
                 s: sample.s,
                 v: sample.v,
-            }
-        };
+            })
+        });
         Self {
-            encounter,
-            states: [state(0), state(1)],
-            svo: Sight::FIRST_SVO,
+            course,
+            states,
+            seen: course.sight.pairs(0, states, Sight::FIRST_SVO),
+            earned: 0.0,
+            speeds: 0.0,
         }
     }
 
-    fn see(&mut self, sights: &[Sight<'_>], step: usize) -> [Pair; 2] {
-        let pairs = sights[self.encounter].pairs(step, self.states, self.svo);
-        self.svo = pairs[0].svo();
-        pairs
+    fn advance(&mut self, step: usize, commands: [f32; 2]) {
+        let svo = self.seen[0].svo();
+        self.states = [0, 1].map(|i| advance(self.states[i], commands[i]));
+        self.seen = self.course.sight.pairs(step, self.states, svo);
+        self.speeds += self.states[0].v + self.states[1].v;
+        // At the conflict point itself the SVO is pinned to an end of its range.
+        if !self.arrived() {
+            self.earned -= self.course.deviation(step, self.seen[0].svo());
+        }
+        if self.collided() {
+            self.earned += COLLISION;
+        }
+    }
+
+    /// Distance (m) past the conflict point.
+    fn past(&self, role: Role) -> f32 {
+        let conflict = self.course.sight.encounter.judged(role).conflict_s;
+        self.states[role as usize].s - conflict
+    }
+
+    fn arrived(&self) -> bool {
+        Role::BOTH.into_iter().any(|role| self.past(role) >= 0.0)
+    }
+
+    fn collided(&self) -> bool {
+        let [left, other] = Role::BOTH.map(|role| {
+            let route = &self.course.sight.encounter.judged(role).route;
+            OrientedBox::new(route.pose(self.states[role as usize].s), Footprint::PAPER)
+        });
+        left.overlaps(&other)
+    }
+
+    /// Within one step, whoever is further past in time was there first.
+    fn first(&self) -> Role {
+        let time = |role: Role| self.past(role) / self.states[role as usize].v.max(0.1);
+        if time(Role::Left) >= time(Role::Other) {
+            Role::Left
+        } else {
+            Role::Other
+        }
     }
 
     /// Whether the episode is over after `step` steps; if so, it is counted.
-    fn ends(&self, sights: &[Sight<'_>], step: usize, score: &mut Score) -> bool {
-        let encounter = sights[self.encounter].encounter;
-        let past = |i: usize| self.states[i].s - encounter.participants[i].conflict_s;
-        let area = |i: usize| {
-            let pose = encounter.participants[i].route.pose(self.states[i].s);
-            OrientedBox::new(pose, Footprint::PAPER)
-        };
-        let (left, other) = (past(0), past(1));
-        let length = step as f32 / encounter.steps as f32;
-        let arrived = left >= 0.0 || other >= 0.0;
-        if area(0).overlaps(&area(1)) {
+    fn ends(&self, step: usize, score: &mut Score) -> bool {
+        let encounter = self.course.sight.encounter;
+        if self.collided() {
             score.collisions += 1;
-        } else if arrived {
-            // Within one step, whoever is further past in time was there first.
-            let first = if left / self.states[0].v.max(0.1) >= other / self.states[1].v.max(0.1) {
-                Role::Left
-            } else {
-                Role::Other
-            };
-            let right = first == encounter.first;
+        } else if self.arrived() {
+            let right = self.first() == encounter.first;
             score.priority_accuracy += if right { 1.0 } else { 0.0 };
         } else if step >= 2 * encounter.steps as usize {
             score.time_outs += 1;
         } else {
             return false;
         }
-        score.length_error += (length - 1.0).abs();
+        let length = EpisodeLength {
+            steps: u32::try_from(step).unwrap_or(u32::MAX),
+            recorded: encounter.steps,
+        };
+        score.length_error += length.error().abs();
+        score.reward += (self.earned + length.replayed_total(self.speeds)) / step as f32;
         true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::episodes::{Episode, Reward};
+    use crate::inputs::Inputs;
+    use cede_controller::FeatureSet;
+    use cede_controller::policy::MAX_ACCELERATION;
+    use cede_sim::Dataset;
+
+    /// Both drive off, then ease: every encounter ends, at one time or another.
+    fn command(step: usize) -> [f32; 2] {
+        if step < 30 { [0.5, 0.2] } else { [0.1, -0.1] }
+    }
+
+    #[test]
+    fn the_reward_is_that_of_the_episodes_that_are_learned_from() {
+        let dataset = Dataset::synthetic(30, 2);
+        let courses: Vec<Course<'_>> = dataset
+            .encounters
+            .iter()
+            .take(30)
+            .map(Course::new)
+            .collect();
+        let mut step = 0;
+        let score = drive(&courses, |pairs| {
+            step += 1;
+            let accelerations = command(step).map(|share| share * MAX_ACCELERATION);
+            vec![accelerations; pairs.len()]
+        });
+        let pairs: Vec<Pair> = courses.iter().flat_map(|c| c.sight.recorded()).collect();
+        let inputs = Inputs::fit(FeatureSet::Raw, &pairs);
+        let mut total = 0.0;
+        for course in 0..courses.len() {
+            let mut episode = Episode::begin(course, &courses, &inputs);
+            let steps = (1..)
+                .find_map(|step| episode.step(command(step), &courses, &inputs, Reward::SacerSvo));
+            let rewards: Vec<f32> = steps.unwrap().iter().map(|t| t.reward).collect();
+            total += rewards.iter().sum::<f32>() / rewards.len() as f32;
+        }
+        let mean = total / courses.len() as f32;
+        assert!(
+            (score.reward - mean).abs() < 1e-4,
+            "{} {mean}",
+            score.reward
+        );
+        assert!(score.collisions < courses.len() && score.length_error > 0.0);
+    }
+
+    #[test]
+    fn standing_still_runs_out_of_time_everywhere() {
+        let dataset = Dataset::synthetic(10, 2);
+        let courses: Vec<Course<'_>> = dataset
+            .encounters
+            .iter()
+            .take(10)
+            .map(Course::new)
+            .collect();
+        let score = drive(&courses, |pairs| vec![[-3.0; 2]; pairs.len()]);
+        let (timed_out, wrong) = (score.time_outs, 1.0 - score.priority_accuracy);
+        assert!(
+            timed_out > 5 && wrong * 10.0 >= timed_out as f32,
+            "{score:?}"
+        );
+        assert!(score.reward < -1.5, "{score:?}");
     }
 }

@@ -23,6 +23,9 @@ pub struct Rates {
     pub discount: f32,
     /// τ: share by which the target networks approach the Q-value networks at each update.
     pub softness: f32,
+    /// Share by which the driver, a running average of the policy, approaches it at each update; 1:
+    /// the driver is the policy as it is.
+    pub averaging: f32,
     /// H₀: the entropy that the temperature steers to, in nats, for actions in (−1, 1).
     pub target_entropy: f32,
     /// α at the start.
@@ -37,16 +40,18 @@ impl Default for Rates {
             temperature: 1e-4,
             discount: 0.99,
             softness: 0.005,
+            averaging: 1.0,
             target_entropy: -2.0,
             initial_temperature: 0.1,
         }
     }
 }
 
-/// The five networks, their optimisers and the temperature.
+/// The networks, their optimisers and the temperature.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Learner {
     actor: Network,
+    driver: Network,
     critics: [Network; 2],
     targets: [Network; 2],
     log_temperature: f32,
@@ -119,6 +124,7 @@ impl Learner {
             temperature_adam: Adam::new(1),
             targets: critics.clone(),
             critics,
+            driver: actor.clone(),
             actor,
             log_temperature: libm::logf(rates.initial_temperature),
             scratch: Scratch::default(),
@@ -129,6 +135,12 @@ impl Learner {
     #[must_use]
     pub fn actor(&self) -> &Network {
         &self.actor
+    }
+
+    /// The running average of the policy network: what drives when all is done.
+    #[must_use]
+    pub fn driver(&self) -> &Network {
+        &self.driver
     }
 
     fn actions(&self) -> usize {
@@ -143,7 +155,7 @@ impl Learner {
         self.scratch.samples.iter().map(|s| s.action).collect()
     }
 
-    /// One update of the critics, the policy, the temperature and the targets.
+    /// One update of the critics, the policy, the temperature, the targets and the driver.
     pub fn update(&mut self, batch: &Batch, rates: &Rates, random: &mut Pcg64) -> Losses {
         let count = batch.len() * self.actions();
         self.label(batch, rates, &normals(count, random));
@@ -165,6 +177,7 @@ impl Learner {
         for (target, critic) in self.targets.iter_mut().zip(&self.critics) {
             target.approach(critic, rates.softness);
         }
+        self.driver.approach(&self.actor, rates.averaging);
         losses.entropy = -density;
         losses.temperature = libm::expf(self.log_temperature);
         losses
@@ -486,6 +499,7 @@ mod tests {
             temperature: 1e-2,
             discount: 0.5,
             softness: 0.05,
+            averaging: 1.0,
             target_entropy: -3.0,
             initial_temperature: 0.1,
         };

@@ -7,8 +7,8 @@ use crate::episodes::{Course, Reward};
 use crate::learner::Rates;
 use crate::pilot::Pilot;
 use crate::sac::{self, Sac};
-use cede_sim::Sight;
 use cede_sim::property::StateProperty;
+use cede_sim::{Encounter, Sight};
 use serde::{Deserialize, Serialize};
 
 /// The algorithms by their names on the command line.
@@ -74,12 +74,15 @@ impl Algorithm {
                 ..settings
             }),
             Settings::Sac(settings) => Settings::Sac(sac::Settings {
-                episodes: 6_000,
-                steps_per_update: 16,
+                episodes: 4_500,
+                steps_per_update: 48,
+                parallel: 48,
                 width: 64,
+                centred: true,
                 rates: Rates {
                     policy: 3e-4,
                     temperature: 1e-3,
+                    averaging: 1e-3,
                     ..settings.rates
                 },
                 ..settings
@@ -159,7 +162,7 @@ fn merge(mut base: toml::Table, over: &toml::Table) -> toml::Table {
 
 /// What a run learns from, prepared once.
 pub struct Lessons<'e> {
-    /// The encounters as episodes for reinforcement learning.
+    /// The encounters to be judged on, as episodes.
     pub courses: Vec<Course<'e>>,
     /// The encounters as what their vehicles see; the first [`Lessons::own`] are those to be judged on.
     pub sights: Vec<Sight<'e>>,
@@ -167,6 +170,20 @@ pub struct Lessons<'e> {
     pub own: usize,
     /// What will be claimed of the policy; only the analytic policy gradient learns it.
     pub claims: Vec<StateProperty>,
+}
+
+impl<'e> Lessons<'e> {
+    /// Prepares the encounters to be judged on, and those to learn from beside them.
+    #[must_use]
+    pub fn new(own: &[&'e Encounter], more: &'e [Encounter]) -> Self {
+        let all = own.iter().copied().chain(more);
+        Self {
+            courses: own.iter().map(|encounter| Course::new(encounter)).collect(),
+            sights: all.map(Sight::new).collect(),
+            own: own.len(),
+            claims: Vec::new(),
+        }
+    }
 }
 
 /// All that a resumed run needs to go on bit for bit.
@@ -314,6 +331,9 @@ impl<'e> Run<'e> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::checkpoint::Checkpoint;
+    use crate::curve::Curve;
+    use cede_sim::Dataset;
 
     #[test]
     fn settings_are_replaced_by_name_and_unknown_names_are_refused() {
@@ -344,6 +364,54 @@ mod tests {
             "target_entropy = -2.0",
         ] {
             assert!(text.contains(line), "{line} in\n{text}");
+        }
+    }
+
+    /// Settings with which a run of a hundred slices takes a moment.
+    fn small(algorithm: Algorithm) -> Settings {
+        let set = match algorithm {
+            Algorithm::Bc => "updates = 100\nwidth = 16\nbatch = 64",
+            Algorithm::Apg => "updates = 30\nwidth = 16\nbatch = 80\nhorizon = 6",
+            _ => {
+                "episodes = 60\nwidth = 16\nbatch = 32\nparallel = 4\nsteps_per_update = 8\n\
+                 buffer = 500\nbuffer_minimum = 50\ncentred = true"
+            }
+        };
+        algorithm.settings().with(&set.parse().unwrap()).unwrap()
+    }
+
+    #[test]
+    fn every_algorithm_goes_on_from_a_checkpoint_bit_for_bit() {
+        let dataset = Dataset::synthetic(8, 4);
+        let encounters: Vec<&Encounter> = dataset.encounters.iter().take(8).collect();
+        let lessons = Lessons::new(&encounters, &[]);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("run.checkpoint");
+        for algorithm in Algorithm::ALL {
+            let mut whole = Run::new(small(algorithm), &lessons, 3);
+            while whole.advance().is_some() {}
+            let mut first = Run::new(small(algorithm), &lessons, 3);
+            (0..17).for_each(|_| assert!(first.advance().is_some()));
+            let saved = Checkpoint {
+                data: [0; 32],
+                algorithm: algorithm.name().to_owned(),
+                seed: 3,
+                settings: String::new(),
+                progress: first.progress(),
+                curve: Curve::default(),
+            };
+            saved.save(&path).unwrap();
+            drop(first);
+            let loaded = Checkpoint::load(&path).unwrap();
+            let mut second = Run::resume(loaded.progress, &lessons);
+            while second.advance().is_some() {}
+            assert!(
+                second.progress() == whole.progress(),
+                "{}",
+                algorithm.name()
+            );
+            let weights = |run: &Run<'_>| run.pilot().weights([0; 32]).unwrap();
+            assert_eq!(weights(&second), weights(&whole), "{}", algorithm.name());
         }
     }
 }

@@ -40,6 +40,9 @@ pub struct Settings {
     pub buffer_minimum: usize,
     /// Steps in a batch.
     pub batch: usize,
+    /// Whether a step's reward is counted from what its course has usually earned a step. Rewards
+    /// are negative nearly everywhere: counted from 0, an early end would spare costs.
+    pub centred: bool,
     /// Learning rates and constants of the algorithm.
     pub rates: Rates,
 }
@@ -56,10 +59,14 @@ impl Default for Settings {
             buffer: 100_000,
             buffer_minimum: 1_000,
             batch: 512,
+            centred: false,
             rates: Rates::default(),
         }
     }
 }
+
+/// Share by which a course's running mean reward approaches that of an episode that has ended.
+const MEAN_RATE: f32 = 0.1;
 
 /// What a run carries from one update to the next: networks, targets, moments, temperature, replay
 /// buffer, episodes under way and the generator.
@@ -75,6 +82,8 @@ pub struct Progress {
     updates: u64,
     /// Steps since the last update that was due.
     owed: u32,
+    /// Of each course, the running mean of its episodes' mean reward a step, once there was one.
+    usual: Vec<Option<f32>>,
 }
 
 /// A training run.
@@ -131,6 +140,7 @@ impl<'e> Sac<'e> {
             episodes: 0,
             updates: 0,
             owed: 0,
+            usual: vec![None; courses.len()],
         };
         Self::resume(progress, courses)
     }
@@ -151,11 +161,11 @@ impl<'e> Sac<'e> {
         &self.progress
     }
 
-    /// The driver as it is: the policy's mean, without its noise.
+    /// The driver as it is: the averaged policy's mean, without its noise.
     #[must_use]
     pub fn pilot(&self) -> Pilot<'_> {
         Pilot {
-            network: self.progress.learner.actor(),
+            network: self.progress.learner.driver(),
             inputs: &self.progress.inputs,
             perspective: Perspective::Joint,
         }
@@ -208,6 +218,7 @@ impl<'e> Sac<'e> {
             running,
             episodes,
             owed,
+            usual,
             ..
         } = &mut self.progress;
         while running.len() < settings.parallel {
@@ -221,11 +232,20 @@ impl<'e> Sac<'e> {
         let actions = learner.act(&seen, random);
         for (episode, action) in running.iter_mut().zip(actions.as_chunks().0) {
             *owed += 1;
-            let Some(steps) = episode.step(*action, self.courses, inputs, settings.reward) else {
+            let Some(mut steps) = episode.step(*action, self.courses, inputs, settings.reward)
+            else {
                 continue;
             };
             round.episodes += 1;
-            round.reward += steps.iter().map(|t| t.reward).sum::<f32>() / steps.len() as f32;
+            let mean = steps.iter().map(|t| t.reward).sum::<f32>() / steps.len() as f32;
+            round.reward += mean;
+            if settings.centred {
+                let usual = usual[episode.course].get_or_insert(mean);
+                *usual += MEAN_RATE * (mean - *usual);
+                steps
+                    .iter_mut()
+                    .for_each(|transition| transition.reward -= *usual);
+            }
             steps.iter().for_each(|transition| replay.push(transition));
             *episodes += 1;
             let course = random.random_range(0..self.courses.len());

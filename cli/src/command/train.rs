@@ -3,14 +3,14 @@
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::source::Source;
+use crate::training::{Identity, Training};
 use cede_sim::data::Split;
 use cede_sim::property::{Properties, StateProperty};
-use cede_sim::{Dataset, Encounter, Sight, output};
-use cede_train::checkpoint::{Checkpoint, CheckpointError};
+use cede_sim::{Dataset, Encounter, output};
+use cede_train::curve::{Panel, Point};
 use cede_train::episodes::Course;
 use cede_train::judge::judge;
 use cede_train::log::Log;
-use cede_train::network::Tape;
 use cede_train::provenance::{Provenance, data_hash};
 use cede_train::run::{Algorithm, Lessons, Report, Run, Settings};
 use clap::builder::PossibleValue;
@@ -80,8 +80,6 @@ impl clap::ValueEnum for Choice {
     }
 }
 
-/// Time between two checkpoints.
-const CHECKPOINT_EVERY: Duration = Duration::from_secs(30);
 /// Time between two judgements for the progress bar.
 const JUDGE_EVERY: Duration = Duration::from_secs(5);
 /// Encounters of the judgement for the progress bar.
@@ -114,18 +112,21 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let (claims, text) = args.claims()?;
     let hash = data_hash(encounters(), &text);
     let lessons = Lessons {
-        courses: match settings {
-            Settings::Sac(_) => own.iter().map(|e| Course::new(e)).collect(),
-            _ => Vec::new(),
-        },
-        sights: encounters().map(Sight::new).collect(),
-        own: own.len(),
         claims,
+        ..Lessons::new(&own, &more)
     };
-    let mut run = args.begin(&settings, &lessons, hash)?;
-    args.advance(&mut run, &settings, &lessons, hash)?;
-    let provenance = args.provenance(&settings, encounters().count(), hash);
-    args.write(&run, &provenance)
+    let identity = Identity {
+        data: hash,
+        algorithm: args.algorithm.0,
+        seed: args.seed,
+        settings,
+    };
+    let provenance = args.provenance(&identity, encounters().count());
+    let mut training = args.begin(identity, &lessons, args.panel(&dataset, &lessons))?;
+    args.advance(&mut training, &lessons)?;
+    args.write(&training.run, &provenance)?;
+    training.clean();
+    Ok(())
 }
 
 impl Args {
@@ -179,81 +180,53 @@ impl Args {
         self.out.with_extension("checkpoint")
     }
 
+    /// What the curve is drawn from; without `--log` there is none.
+    fn panel<'e>(&self, dataset: &'e Dataset, lessons: &'e Lessons<'e>) -> Option<Panel<'e>> {
+        self.log.as_ref().map(|_| Panel {
+            train: &lessons.courses,
+            validation: dataset.split(Split::Validation).map(Course::new).collect(),
+        })
+    }
+
     fn begin<'e>(
         &self,
-        settings: &Settings,
+        identity: Identity,
         lessons: &'e Lessons<'e>,
-        data: [u8; 32],
-    ) -> Result<Run<'e>, Failure> {
-        if !self.resume {
-            return Ok(Run::new(settings.clone(), lessons, self.seed));
+        panel: Option<Panel<'e>>,
+    ) -> Result<Training<'e>, Failure> {
+        let checkpoint = self.checkpoint();
+        if self.resume {
+            Training::resume(identity, lessons, panel, checkpoint)
+        } else {
+            Ok(Training::new(identity, lessons, panel, checkpoint))
         }
-        let path = self.checkpoint();
-        let checkpoint = Checkpoint::load(&path).map_err(|error| {
-            let mend = match error {
-                CheckpointError::Read { .. } => "leave out --resume to begin anew",
-                CheckpointError::Content { .. } => "delete it and leave out --resume to begin anew",
-            };
-            Failure::input(error, mend)
-        })?;
-        let same = checkpoint.data == data
-            && checkpoint.algorithm == self.algorithm.0.name()
-            && checkpoint.seed == self.seed
-            && checkpoint.settings == settings.text();
-        if !same {
-            return Err(Failure::input(
-                format!("{} belongs to another run", path.display()),
-                "give the same algorithm, data, seed and settings, or leave out --resume",
-            ));
-        }
-        Ok(Run::resume(checkpoint.progress, lessons))
     }
 
-    fn advance(
-        &self,
-        run: &mut Run<'_>,
-        settings: &Settings,
-        lessons: &Lessons<'_>,
-        data: [u8; 32],
-    ) -> Result<(), Failure> {
-        let save = |run: &Run<'_>| {
-            Checkpoint {
-                data,
-                algorithm: self.algorithm.0.name().to_owned(),
-                seed: self.seed,
-                settings: settings.text(),
-                progress: run.progress(),
-            }
-            .save(&self.checkpoint())
-        };
+    fn advance(&self, training: &mut Training<'_>, lessons: &Lessons<'_>) -> Result<(), Failure> {
         let mut log = self.log()?;
         let mut bar = Bar::new(lessons);
-        let mut saved = Instant::now();
-        while let Some(report) = run.advance() {
-            bar.show(&report, run);
-            if let (Some(log), Some(folder)) = (&mut log, &self.log) {
-                let added = log.add(report.done, &report.scalars);
-                added.map_err(|error| unwritable(folder, &error))?;
-            }
-            if let Err(stop) = interrupt::check() {
-                save(run)?;
-                bar.finish();
-                eprintln!(
-                    "saved to {}; go on with --resume",
-                    self.checkpoint().display()
-                );
-                return Err(stop);
-            }
-            if saved.elapsed() > CHECKPOINT_EVERY {
-                save(run)?;
-                saved = Instant::now();
-            }
-        }
+        let done = training.finish(|report, run, point| {
+            bar.show(report, run);
+            let (Some(log), Some(folder)) = (&mut log, &self.log) else {
+                return Ok(());
+            };
+            let judged = point.map(scalars).unwrap_or_default();
+            let added = log
+                .add(report.done, &report.scalars)
+                .and_then(|()| log.add(report.done, &judged));
+            added.map_err(|error| unwritable(folder, &error))
+        });
         bar.finish();
-        Ok(())
+        if let Err(Failure::Interrupted) = done {
+            eprintln!(
+                "saved to {}; go on with --resume",
+                self.checkpoint().display()
+            );
+        }
+        done
     }
 
-    fn provenance(&self, settings: &Settings, encounters: usize, hash: [u8; 32]) -> Provenance {
+    fn provenance(&self, identity: &Identity, encounters: usize) -> Provenance {
         let synthetic = self.source.data == "synthetic";
         let data = if synthetic {
             format!("synthetic, seed {}", self.data_seed)
@@ -284,11 +257,11 @@ impl Args {
         }
         Provenance {
             algorithm: self.algorithm.0.name().to_owned(),
-            settings: settings.text(),
+            settings: identity.settings.text(),
             seed: self.seed,
             data,
             encounters,
-            data_hash: hash,
+            data_hash: identity.data,
             command: command + " --out FILE.cede",
         }
     }
@@ -302,8 +275,6 @@ impl Args {
         output::write(&self.out.with_extension("txt"), |file| {
             file.write_all(provenance.text().as_bytes())
         })?;
-        // The run is over, so its checkpoint has served.
-        let _ = std::fs::remove_file(self.checkpoint());
         println!("{}", self.out.display());
         Ok(())
     }
@@ -322,6 +293,24 @@ fn read(path: &Path) -> Result<String, Failure> {
         let problem = format!("cannot read {}: {error}", path.display());
         Failure::input(problem, "check the path")
     })
+}
+
+/// A point of the curve as scalars to plot.
+fn scalars(point: &Point) -> Vec<(&'static str, f32)> {
+    let train = [
+        ("train/reward per step", point.train.reward),
+        ("train/priority accuracy", point.train.priority_accuracy),
+        ("train/length error", point.train.length_error),
+    ];
+    let validation = point.validation.map(|score| {
+        [
+            ("validation/reward per step", score.reward),
+            ("validation/priority accuracy", score.priority_accuracy),
+            ("validation/length error", score.length_error),
+        ]
+    });
+    let validation = validation.into_iter().flatten();
+    train.into_iter().chain(validation).collect()
 }
 
 fn unwritable(folder: &Path, error: &std::io::Error) -> Failure {
@@ -385,9 +374,8 @@ impl<'l> Bar<'l> {
             return;
         }
         if self.judged.is_none_or(|last| last.elapsed() > JUDGE_EVERY) {
-            let (pilot, mut tape) = (run.pilot(), Tape::default());
-            let some = &self.lessons.sights[..self.lessons.own.min(JUDGED)];
-            let score = judge(some, |pairs| pilot.drive(pairs, &mut tape));
+            let courses = &self.lessons.courses;
+            let score = judge(&courses[..courses.len().min(JUDGED)], run.pilot());
             self.score = format!(
                 "priority accuracy {:.0} %, length error {:.2}",
                 100.0 * score.priority_accuracy,

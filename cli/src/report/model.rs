@@ -9,6 +9,8 @@ use cede_sim::episode::{End, Episode};
 use cede_sim::evaluate::{Drive, Row};
 use cede_sim::metrics::{recorded_states, svo_series};
 use cede_sim::{Encounter, EncounterId, Participant, Role, State};
+use cede_train::curve::Point;
+use cede_train::judge::Score;
 use serde::Serialize;
 use std::collections::HashSet;
 
@@ -29,6 +31,7 @@ pub(super) struct Page {
     pub(super) distributions: Vec<Episodes>,
     pub(super) interventions: Vec<Interventions>,
     pub(super) sweep: Vec<Panel>,
+    pub(super) learning: Vec<Curve>,
 }
 
 impl Page {
@@ -271,9 +274,58 @@ fn route(vehicle: &Participant) -> Vec<[f64; 2]> {
         .collect()
 }
 
+/// Rounded to thousandths.
+fn milli(value: f32) -> f64 {
+    (f64::from(value) * 1000.0).round() / 1000.0
+}
+
 /// Rounded to hundredths: what can be seen, in a third of the bytes.
 fn centi(value: f64) -> f64 {
     (value * 100.0).round() / 100.0
+}
+
+/// How a row's driver scored while it was trained, point by point.
+#[derive(Serialize)]
+pub(super) struct Curve {
+    driver: &'static str,
+    /// Shares of the training's work, in percent.
+    done: Vec<f64>,
+    train: Series,
+    validation: Series,
+}
+
+#[derive(Default, Serialize)]
+struct Series {
+    reward: Vec<f64>,
+    priority_accuracy: Vec<f64>,
+}
+
+impl Curve {
+    pub(super) fn of(driver: &'static str, points: &[Point]) -> Self {
+        let validation = points.iter().filter_map(|point| point.validation);
+        Self {
+            driver,
+            done: points
+                .iter()
+                .map(|point| centi(100.0 * f64::from(point.share)))
+                .collect(),
+            train: Series::of(points.iter().map(|point| point.train)),
+            validation: Series::of(validation),
+        }
+    }
+}
+
+impl Series {
+    fn of(scores: impl Iterator<Item = Score>) -> Self {
+        let mut series = Self::default();
+        for score in scores {
+            series.reward.push(milli(score.reward));
+            series
+                .priority_accuracy
+                .push(milli(score.priority_accuracy));
+        }
+        series
+    }
 }
 
 /// How close a driver's episodes came.

@@ -13,6 +13,7 @@ document.getElementById("subtitle").textContent = report.subtitle;
 document.getElementById("provenance").textContent = report.provenance;
 if (report.rows.length) tables(document.getElementById("tables"), report);
 if (report.cases.length) player(report);
+if (report.learning.length) learning(report);
 if (report.distributions.length) distributions(report);
 if (report.interventions.length) interventions(report);
 if (report.sweep.length) sweep(report);

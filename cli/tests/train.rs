@@ -1,0 +1,161 @@
+//! `cede train` and `cede reproduce` from the outside: interrupted, gone on with, and out of luck.
+#![cfg(unix)]
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+/// `cede train` of small networks on a few synthetic encounters, into `folder`.
+fn train(algorithm: &str, folder: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_cede"));
+    command
+        .args(["train", algorithm, "--data", "synthetic"])
+        .args(["--encounters", "20", "--set", "width=16"])
+        .arg("--out")
+        .arg(folder.join("driver.cede"));
+    let sets: &[&str] = match algorithm {
+        "bc" => &["updates=3000", "batch=16"],
+        "apg" => &["updates=150", "batch=16", "horizon=5", "last_horizon=5"],
+        _ => &[
+            "episodes=400",
+            "batch=16",
+            "buffer=2000",
+            "steps_per_update=8",
+        ],
+    };
+    sets.iter().for_each(|set| {
+        command.args(["--set", set]);
+    });
+    command
+}
+
+fn succeed(command: &mut Command) {
+    let output = command.output().unwrap();
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{stderr}");
+}
+
+/// Starts `command`, which logs to `log`, and presses Ctrl-C once it learns.
+fn interrupt(mut command: Command, log: &Path) -> Option<i32> {
+    let mut child = command.stderr(Stdio::null()).spawn().unwrap();
+    let curve = log.join("scalars.csv");
+    while std::fs::metadata(&curve).map_or(0, |m| m.len()) < 200 {
+        if let Some(status) = child.try_wait().unwrap() {
+            return status.code();
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    let interrupted = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(interrupted.unwrap().success());
+    child.wait().unwrap().code()
+}
+
+#[test]
+fn an_interrupted_training_goes_on_to_the_same_bits() {
+    for algorithm in ["bc", "sac", "apg"] {
+        let [whole, parts] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+        succeed(&mut train(algorithm, whole.path()));
+        let log = parts.path().join("log");
+        let mut first = train(algorithm, parts.path());
+        first.arg("--log").arg(&log);
+        assert_eq!(interrupt(first, &log), Some(4), "{algorithm}");
+        assert!(parts.path().join("driver.checkpoint").exists());
+        assert!(!parts.path().join("driver.cede").exists());
+        succeed(train(algorithm, parts.path()).arg("--resume"));
+        let weights = |folder: &Path| std::fs::read(folder.join("driver.cede")).unwrap();
+        assert_eq!(weights(parts.path()), weights(whole.path()), "{algorithm}");
+        assert!(!parts.path().join("driver.checkpoint").exists());
+    }
+}
+
+#[test]
+fn reproduce_gives_rows_baselines_and_curves_and_takes_up_what_is_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let reproduce = |extra: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_cede"));
+        command
+            .args(["reproduce", "--data", "synthetic", "--encounters", "20"])
+            .args(["--rows", "bc", "--seeds", "1", "--json", "--out"])
+            .arg(folder.path())
+            .args(extra);
+        let output = command.output().unwrap();
+        assert!(output.status.success());
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let text = reproduce(&[]);
+    let object: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let rows = object["rows"].as_array().unwrap();
+    let count = |driver: &str| rows.iter().filter(|row| row["driver"] == driver).count();
+    // So few encounters are all in the training split: without a shield and with either contract.
+    assert_eq!((count("bc"), count("logistic")), (3, 1));
+    assert!(
+        rows.iter()
+            .all(|row| row["seed"].is_null() != (row["driver"] == "bc"))
+    );
+    let points = object["curves"][0]["points"].as_array().unwrap();
+    assert_eq!(points.len(), 25);
+    assert!(points[24]["train"]["reward"].as_f64().unwrap() < 0.0);
+    assert!(folder.path().join("report.html").exists());
+
+    let weights = folder.path().join("bc-0.cede");
+    let made = || std::fs::metadata(&weights).unwrap().modified().unwrap();
+    let before = made();
+    assert_eq!(reproduce(&["--resume"]), text);
+    assert_eq!(made(), before, "it was trained again");
+}
+
+/// Runs `command` where no file may grow beyond `kib` KiB, as on a full disk.
+fn cramped(command: &Command, kib: u32) -> (Option<i32>, String) {
+    let mut shell = Command::new("sh");
+    shell
+        .arg("-c")
+        .arg(format!("trap '' XFSZ; ulimit -f {}; exec \"$@\"", 2 * kib))
+        .arg("sh")
+        .arg(command.get_program())
+        .args(command.get_args());
+    let output = shell.output().unwrap();
+    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+    (output.status.code(), stderr)
+}
+
+#[test]
+fn where_nothing_can_be_written_the_old_file_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    succeed(&mut train("bc", folder.path()));
+    let file = folder.path().join("driver.cede");
+    let before = std::fs::read(&file).unwrap();
+    let (code, stderr) = cramped(train("bc", folder.path()).args(["--seed", "1"]), 1);
+    assert_eq!(code, Some(3), "{stderr}");
+    assert!(
+        stderr.contains("cannot write") && stderr.contains("untouched"),
+        "{stderr}"
+    );
+    assert_eq!(std::fs::read(&file).unwrap(), before);
+}
+
+#[test]
+fn a_damaged_checkpoint_is_refused_and_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("log");
+    let mut first = train("sac", folder.path());
+    first.arg("--log").arg(&log);
+    assert_eq!(interrupt(first, &log), Some(4));
+    let checkpoint = folder.path().join("driver.checkpoint");
+    let mut bytes = std::fs::read(&checkpoint).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    std::fs::write(&checkpoint, &bytes).unwrap();
+    let output = train("sac", folder.path())
+        .arg("--resume")
+        .output()
+        .unwrap();
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{stderr}");
+    assert!(
+        stderr.contains("checksum") && stderr.contains("delete it"),
+        "{stderr}"
+    );
+    assert_eq!(std::fs::read(&checkpoint).unwrap(), bytes);
+}
