@@ -34,7 +34,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            weight: 1.0,
+            weight: 3.0,
             margin: 0.2,
             slope_margin: 0.1,
             fresh: 16,

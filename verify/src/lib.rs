@@ -4,5 +4,7 @@
 //! samples) and *assumed*.
 #![forbid(unsafe_code)]
 
+mod interval;
 pub mod network;
 pub mod policy;
+pub mod reach;

@@ -13,8 +13,10 @@ mod check;
 mod features;
 mod gradient;
 mod interval;
+mod response;
 mod search;
 
+pub(crate) use response::Response;
 pub use search::{Finding, Settled};
 
 use crate::network::{Activation, Feature, InputBox, Layer, Matrix, Network};

@@ -4,6 +4,7 @@ mod campaign;
 mod check;
 mod network;
 mod policy;
+mod reach;
 mod shield;
 
 use crate::failure::Failure;
@@ -16,6 +17,8 @@ pub(crate) enum Verify {
     Network(network::Network),
     /// Does the policy have the properties that are claimed of it?
     Policy(policy::Policy),
+    /// Where can policy, shield and kinematics get to in an encounter?
+    Reach(reach::Reach),
     /// Checks a certificate with code that shares nothing with the prover's.
     Check(check::Check),
     /// What would the shield have allowed recorded drivers?
@@ -30,6 +33,7 @@ impl Verify {
         match self {
             Self::Network(network) => network.run(),
             Self::Policy(policy) => policy.run(),
+            Self::Reach(reach) => reach.run(),
             Self::Check(check) => check.run(),
             Self::Shield(shield) => shield.run(),
             Self::Campaign(campaign) => campaign.run(),

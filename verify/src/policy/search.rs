@@ -46,9 +46,9 @@ pub struct Settled {
 }
 
 /// Largest acceleration of any policy: 3·tanh.
-const MOST: f64 = cede_controller::policy::MAX_ACCELERATION as f64;
+pub(super) const MOST: f64 = cede_controller::policy::MAX_ACCELERATION as f64;
 /// Allowance for the rounding of `tanhf` and the factor 3, relative to 1.
-const TANH: f64 = 1e-6;
+pub(super) const TANH: f64 = 1e-6;
 /// A difference quotient is taken over this step (m or m/s) when a slope is to be refuted.
 const STEP: f64 = 0.05;
 /// What `f32` rounding may do to such a difference.
@@ -352,7 +352,7 @@ fn unsafe_side(claim: Claim, margin: f64) -> Option<Halfspace> {
 
 /// How far the controller's `f32` mean can be from the exact one anywhere on the region, its
 /// inputs with their `errors` given: the usual bound for sums of products in any order, carried through the layers.
-fn single_precision_margin(
+pub(super) fn single_precision_margin(
     network: &Network,
     features: &[Feature],
     region: &InputBox,

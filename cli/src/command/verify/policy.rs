@@ -45,14 +45,7 @@ pub(crate) struct Policy {
 impl Policy {
     /// Runs the command.
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let words = match &self.weights {
-            Some(path) => {
-                words(&named(path, std::fs::read(path).into_diagnostic())?).collect::<Vec<u32>>()
-            }
-            None => cede_controller::embedded::words().to_vec(),
-        };
-        let place = self.weights.as_deref();
-        let place = place.unwrap_or(Path::new("the embedded policy"));
+        let (place, words) = policy_words(self.weights.as_deref())?;
         let weights = named(place, Weights::parse(&words).map_err(|e| miette!("{e}")))?;
         let subject = named(place, Subject::new(weights).into_diagnostic())?;
         let properties = self.properties()?;
@@ -113,7 +106,17 @@ impl Policy {
     }
 }
 
-fn named<T>(path: &Path, result: miette::Result<T>) -> Result<T, Failure> {
+/// The words of a weights file, the embedded one if no `path` is given, and what to call it.
+pub(super) fn policy_words(path: Option<&Path>) -> Result<(&Path, Vec<u32>), Failure> {
+    let Some(path) = path else {
+        let embedded = cede_controller::embedded::words().to_vec();
+        return Ok((Path::new("the embedded policy"), embedded));
+    };
+    let bytes = named(path, std::fs::read(path).into_diagnostic())?;
+    Ok((path, words(&bytes).collect()))
+}
+
+pub(super) fn named<T>(path: &Path, result: miette::Result<T>) -> Result<T, Failure> {
     result
         .wrap_err_with(|| format!("cannot use {}", path.display()))
         .map_err(Failure::Input)

@@ -1,0 +1,126 @@
+//! `cede verify reach`.
+
+use super::policy::{named, policy_words};
+use crate::failure::Failure;
+use cede_controller::Weights;
+use cede_verify::policy::Subject;
+use cede_verify::reach::{Finding, Scenario, Scenarios, Settled, settle};
+use clap::Args;
+use miette::{IntoDiagnostic, miette};
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// What is claimed of the embedded policy behind its shield.
+const SCENARIOS: &str = include_str!("../../../../docs/safety/reach.toml");
+
+/// Where can policy, shield and kinematics get to, from all states of a region? Exit code 1 if a
+/// scenario's claim is not proved.
+#[derive(Args)]
+pub(crate) struct Reach {
+    /// The policy (`.cede`); the embedded one if none is given.
+    #[arg(long, value_name = "FILE")]
+    weights: Option<PathBuf>,
+    /// The scenarios (TOML); those of `docs/safety/reach.toml`, as they were when this program was
+    /// built, if none are given.
+    #[arg(long, value_name = "FILE")]
+    scenarios: Option<PathBuf>,
+    /// Give up on a scenario after so many seconds.
+    #[arg(long, value_name = "SECONDS", default_value_t = 120)]
+    timeout: u64,
+    /// Threads to search on; all cores by default.
+    #[arg(long, default_value_t = 0)]
+    threads: usize,
+    /// Print one JSON object instead.
+    #[arg(long)]
+    json: bool,
+}
+
+impl Reach {
+    /// Runs the command.
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let (place, words) = policy_words(self.weights.as_deref())?;
+        let weights = named(place, Weights::parse(&words).map_err(|e| miette!("{e}")))?;
+        let subject = named(place, Subject::new(weights).into_diagnostic())?;
+        let scenarios = self.read()?.scenario;
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(self.threads)
+            .build()
+            .into_diagnostic();
+        let limit = Duration::from_secs(self.timeout);
+        let settled: Vec<(Scenario, Settled)> = pool.map_err(Failure::Input)?.install(|| {
+            let settle = |scenario: Scenario| {
+                let settled = settle(&subject, &scenario, Instant::now() + limit);
+                (scenario, settled)
+            };
+            scenarios.into_iter().map(settle).collect()
+        });
+        // A reader that has seen enough may close the pipe.
+        let _ = writeln!(std::io::stdout(), "{}", self.told(&settled));
+        let open: Vec<&str> = settled
+            .iter()
+            .filter(|(_, settled)| settled.finding != Finding::Proved)
+            .map(|(scenario, _)| scenario.id.as_str())
+            .collect();
+        if open.is_empty() {
+            Ok(())
+        } else {
+            Err(Failure::Check(format!("not proved: {}", open.join(", "))))
+        }
+    }
+
+    fn read(&self) -> Result<Scenarios, Failure> {
+        let Some(path) = &self.scenarios else {
+            let scenarios = Scenarios::read(SCENARIOS).into_diagnostic();
+            return named(Path::new("docs/safety/reach.toml"), scenarios);
+        };
+        let text = std::fs::read_to_string(path).into_diagnostic();
+        named(
+            path,
+            text.and_then(|text| Scenarios::read(&text).into_diagnostic()),
+        )
+    }
+
+    fn told(&self, settled: &[(Scenario, Settled)]) -> String {
+        if self.json {
+            let rows: Vec<_> = settled.iter().map(json).collect();
+            return serde_json::json!({ "scenarios": rows }).to_string();
+        }
+        settled.iter().map(text).collect::<Vec<_>>().join("\n")
+    }
+}
+
+fn word(finding: &Finding) -> &'static str {
+    match finding {
+        Finding::Proved => "proved",
+        Finding::Unsettled(_) => "unsettled",
+    }
+}
+
+fn text((scenario, settled): &(Scenario, Settled)) -> String {
+    let mut line = format!(
+        "{:<6} {:<9} {} ({} tubes, at most {:.1} s)",
+        scenario.id,
+        word(&settled.finding),
+        scenario.title,
+        settled.tubes,
+        settled.latest
+    );
+    if let Finding::Unsettled([d, v, other_d, other_v]) = settled.finding {
+        line += &format!(
+            "\n       open for the ego at {d:.2?} m, {v:.2?} m/s, the other at {other_d:.2?} m, {other_v:.2?} m/s"
+        );
+    }
+    line
+}
+
+fn json((scenario, settled): &(Scenario, Settled)) -> serde_json::Value {
+    let open = match settled.finding {
+        Finding::Proved => None,
+        Finding::Unsettled(region) => Some(region),
+    };
+    serde_json::json!({
+        "id": scenario.id, "title": scenario.title, "finding": word(&settled.finding), "open": open,
+        "tubes": settled.tubes, "latest": settled.latest, "hull": settled.hull,
+    })
+}
