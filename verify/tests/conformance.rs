@@ -2,10 +2,11 @@
 //! `CEDE_CONFORMANCE_DIR` or `../shared/conformance`, these tests say so and pass.
 
 use cede_verify::network::{
-    Answer, Certificate, Network, Property, Settings, onnx, verify, vnnlib,
+    Answer, Branching, Certificate, Network, Property, Settings, onnx, verify, vnnlib,
 };
 use proptest::prelude::*;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 fn folder(name: &str) -> Option<PathBuf> {
     let given = std::env::var_os("CEDE_CONFORMANCE_DIR").map(PathBuf::from);
@@ -84,6 +85,29 @@ fn agree(instances: &[Instance], checked: bool) {
 fn reinforcement_learning_benchmarks_agree_and_their_proofs_are_checked() {
     if let Some(folder) = folder("rl_benchmarks") {
         agree(&instances(&folder, |_| true), true);
+    }
+}
+
+/// Two of the eighty take longer than anybody waits when the phases of ReLUs are all that is cut;
+/// what matters is that an answer is never the wrong one.
+#[test]
+fn cutting_across_phases_alone_is_slow_at_times_but_never_wrong() {
+    let Some(folder) = folder("rl_benchmarks") else {
+        return;
+    };
+    for instance in instances(&folder, |_| true) {
+        let settings = Settings {
+            branching: Branching::Phases,
+            timeout: Duration::from_secs(1),
+            ..Settings::default()
+        };
+        let report = verify(&instance.network, &instance.property, settings).expect("they fit");
+        let wrong = match report.answer {
+            Answer::Unsat => instance.verdict != "unsat",
+            Answer::Sat(_) => instance.verdict != "sat",
+            Answer::Timeout | Answer::Unknown => false,
+        };
+        assert!(!wrong, "{}", instance.name);
     }
 }
 

@@ -14,7 +14,7 @@ use cede_sim::property::Setting;
 use rayon::prelude::*;
 
 /// How often a leaf may be halved in the attempt to confirm it.
-const HALVINGS: u32 = 8;
+const HALVINGS: u32 = 20;
 
 /// Checks that on every leaf of the proof's tree the slopes of the mean are such that the claim
 /// `holds`; gives the number of leaves.
