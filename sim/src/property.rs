@@ -152,6 +152,15 @@ pub enum Claim {
     },
 }
 
+impl Claim {
+    fn number(self) -> f64 {
+        match self {
+            Self::AccelerationAtMost(a) | Self::AccelerationAtLeast(a) => a,
+            Self::RisesAtLeast { slope, .. } | Self::ChangesAtMost { slope, .. } => slope,
+        }
+    }
+}
+
 /// A file of properties that cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PropertyError {
@@ -196,6 +205,17 @@ impl Properties {
                 || property.turns.is_empty()
             {
                 return fault("conflicts, right_of_way and turns must each name something");
+            }
+            if !property
+                .turns
+                .iter()
+                .flatten()
+                .all(|turn| turn.abs() <= 1.0)
+            {
+                return fault("a turn is a sine: give -1 to 1");
+            }
+            if !property.claim.number().is_finite() {
+                return fault("a claim of what is not a number is no claim");
             }
         }
         Ok(properties)
@@ -257,6 +277,22 @@ impl StateProperty {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_damaged_file_is_read_or_refused(at in 0_usize..4000, with in "[a-z0-9.=\\[\\]\"\n-]{0,4}") {
+            let mut text = include_str!("../../docs/safety/policy.toml").to_owned();
+            while !text.is_char_boundary(at.min(text.len())) {
+                text.pop();
+            }
+            let at = at.min(text.len());
+            text.insert_str(at, &with);
+            if let Ok(properties) = Properties::read(&text) {
+                prop_assert!(properties.property.iter().all(|p| p.claim.number().is_finite()));
+            }
+        }
+    }
 
     #[test]
     fn property_files_are_read_or_refused_with_a_reason() {
@@ -285,6 +321,8 @@ mod tests {
             ("[0, 8]", "[-1, 8]"),
             ("[\"other\"]", "[]"),
             ("acceleration", "velocity"),
+            ("-0.5", "nan"),
+            ("claim", "turns = [[0, nan]]\n claim"),
         ] {
             assert!(Properties::read(&text.replace(from, to)).is_err(), "{to}");
         }

@@ -122,3 +122,31 @@ impl Certificate {
             .sum()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const TEXT: &str = "cede-certificate 1\nonnx a.onnx\nvnnlib b.vnnlib\nqueries 0\n";
+
+    #[test]
+    fn a_head_is_read() {
+        let read = Certificate::from_text(TEXT).expect("well formed");
+        assert_eq!(
+            read,
+            Certificate::new(Path::new("a.onnx"), Path::new("b.vnnlib"), vec![])
+        );
+        let endless = TEXT.replace("queries 0", "queries 18446744073709551615");
+        assert!(Certificate::from_text(&endless).is_err());
+    }
+
+    proptest! {
+        #[test]
+        fn a_damaged_head_is_read_or_refused(at in 0..TEXT.len(), with in "[a-z0-9 \n-]{0,4}") {
+            let mut text = TEXT.to_owned();
+            text.replace_range(at..=at, &with);
+            let _ = Certificate::from_text(&text);
+        }
+    }
+}

@@ -126,6 +126,11 @@ impl Scenario {
         if !(0.0..=LONGEST).contains(&time) {
             return Err("it lasts longer than 60 s");
         }
+        if let Claim::Arrives { at_least, .. } = self.claim
+            && !(0.0..=15.0).contains(&at_least)
+        {
+            return Err("the least speed is beyond 0 to 15 m/s");
+        }
         Ok(())
     }
 

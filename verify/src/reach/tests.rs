@@ -170,6 +170,7 @@ fn files_of_scenarios_are_read_or_refused_with_a_reason() {
         ("during = 30", "during = 3000"),
         ("never_both", "never_three"),
         ("[-0.5, 0.5]", "[-0.5, 5]"),
+        ("at_least = 1", "at_least = nan"),
     ] {
         assert!(Scenarios::read(&text.replace(from, to)).is_err(), "{to}");
     }
