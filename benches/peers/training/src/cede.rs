@@ -1,0 +1,15 @@
+//! Cede's learner.
+
+use crate::{ACTIONS, FEATURES, Update, batch};
+use cede_train::learner::{Learner, Rates};
+use rand::SeedableRng;
+use rand_pcg::Pcg64;
+
+/// Cede's update with hidden layers of `width`.
+#[must_use]
+pub fn cede(width: usize) -> Update {
+    let (batch, rates) = (batch(), Rates::default());
+    let mut random = Pcg64::seed_from_u64(2);
+    let mut learner = Learner::new(FEATURES, ACTIONS, width, &rates, &mut random);
+    Box::new(move || Ok(learner.update(&batch, &rates, &mut random).critic))
+}
