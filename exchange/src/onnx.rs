@@ -8,7 +8,7 @@
 //! [`FeatureSet`](cede_controller::FeatureSet), and gives accelerations (m/s²), `[batch, 2]`: of the ego and
 //! of the other as the policy expects it, or of the left-turner and of the other for a joint policy. So
 //! normalisation and squashing travel inside. Metadata name the feature set, the features, the perspective and
-//! the provenance. [`write`] makes such a graph, [`read`] takes it, or another of its kind, back.
+//! the provenance. [`write()`] makes such a graph, [`read`] takes it, or another of its kind, back.
 
 mod chain;
 mod export;
