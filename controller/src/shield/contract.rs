@@ -1,5 +1,7 @@
 //! What the shield assumes of the world, in numbers.
 
+use super::waiting;
+
 /// The assumptions under which the shield's guarantee holds.
 ///
 /// Guarantee: the ego is never in a conflict zone together with another vehicle, and never
@@ -75,6 +77,10 @@ pub struct Precedence {
     pub tie: u16,
     /// Braking in m/s², in (0, 20], with which the other is expected to stop.
     pub braking: f32,
+    /// Periods for which a vehicle with precedence may rest while the other rests as well, before
+    /// precedence goes to the other, and so on in turn; 0 if it is never lost. Useful from about 10 on:
+    /// the first few periods of a turn are nobody's.
+    pub patience: u16,
 }
 
 /// The first number of a [`Contract`] that is out of its range.
@@ -142,9 +148,15 @@ impl Contract {
             distance: 12.0,
             tie: 5,
             braking: 3.0,
+            patience: 20,
         }),
         ..Self::WORST_CASE
     };
+
+    /// Whether a vehicle whose turn is past stops where the other expects it, and is seen if it does not.
+    fn takes_turns(&self, rule: Precedence) -> bool {
+        self.ego.braking >= rule.braking && waiting::tells_going_from_rest(self)
+    }
 
     /// The contract, if every number is in its range.
     ///
@@ -175,6 +187,11 @@ impl Contract {
             (
                 self.precedence
                     .is_none_or(|p| up_to(p.distance, 200.0) && up_to(p.braking, 20.0)),
+                E::Precedence,
+            ),
+            (
+                self.precedence
+                    .is_none_or(|p| p.patience == 0 || self.takes_turns(p)),
                 E::Precedence,
             ),
         ];

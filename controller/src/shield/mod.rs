@@ -16,6 +16,7 @@ pub mod real;
 pub mod rules;
 #[cfg(test)]
 mod tests;
+mod waiting;
 
 pub use contract::{Contract, ContractError};
 pub use plan::Plan;
@@ -102,13 +103,7 @@ impl<const N: usize, R: Rules> Shield<N, R> {
         self.arrivals.tick();
         let decision = match &observation.checked(scene.meetings().len()) {
             Ok(seen) => self.judge(scene, seen, proposal),
-            Err(fault) => Decision {
-                acceleration: self.carry_on(),
-                cause: Cause::Fallback(*fault),
-                margin: 0.0,
-                breach: None,
-                outlook: None,
-            },
+            Err(fault) => self.blind(*fault),
         };
         self.memory.command(decision.acceleration);
         decision
@@ -139,10 +134,23 @@ impl<const N: usize, R: Rules> Shield<N, R> {
         Ok(verdict.margin)
     }
 
+    fn blind(&mut self, fault: Fault) -> Decision {
+        if let Some(rule) = self.contract.precedence {
+            self.arrivals.blind(rule);
+        }
+        Decision {
+            acceleration: self.carry_on(),
+            cause: Cause::Fallback(fault),
+            margin: 0.0,
+            breach: None,
+            outlook: None,
+        }
+    }
+
     fn judge(&mut self, scene: &Scene<N>, seen: &Observation<N>, proposal: f32) -> Decision {
         let breach = self.memory.note(&self.contract, seen);
         let claims = match self.contract.precedence {
-            Some(rule) => self.arrivals.note(rule, scene, seen),
+            Some(rule) => self.arrivals.note::<R>(&self.contract, rule, scene, seen),
             None => Claims::default(),
         };
         let mut hazards = Hazards::new();

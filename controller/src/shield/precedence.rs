@@ -1,10 +1,13 @@
 //! Who goes first where two vehicles wait for each other.
 
-use super::contract::Precedence;
+use super::contract::{Contract, Precedence};
+use super::rules::Rules;
+use super::waiting::{Rest, Turn, Waiting};
 use crate::observation::{Observation, Vehicle};
 use crate::pair::RightOfWay;
 use crate::scene::{Meeting, Scene};
 use crate::zone::{Interval, Zone};
+use core::num::NonZeroU32;
 
 /// The others over which the ego has precedence.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -20,20 +23,30 @@ impl Claims {
     }
 }
 
-/// When the ego and each other arrived at the zones that they share.
+/// The period at which a vehicle arrived.
+type Arrival = Option<NonZeroU32>;
+
+/// What the ego remembers of itself and one other.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Encounter {
+    ego: Arrival,
+    other: Arrival,
+    waiting: Waiting,
+}
+
+/// When the ego and each other arrived at the zones that they share, and how long they have been waiting.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Arrivals<const N: usize> {
     /// Periods since the start.
     now: u32,
-    /// The ego's arrival and the other's.
-    pairs: [(Option<u32>, Option<u32>); N],
+    encounters: [Encounter; N],
 }
 
 impl<const N: usize> Arrivals<N> {
-    pub(crate) const fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self {
             now: 0,
-            pairs: [(None, None); N],
+            encounters: [Encounter::default(); N],
         }
     }
 
@@ -42,32 +55,87 @@ impl<const N: usize> Arrivals<N> {
         self.now = self.now.saturating_add(1);
     }
 
-    /// Notes who has arrived, and says over whom the ego has precedence.
-    pub(crate) fn note(
+    /// Notes who has arrived and who waits, and says over whom the ego has precedence.
+    pub(crate) fn note<R: Rules>(
         &mut self,
+        contract: &Contract,
         rule: Precedence,
         scene: &Scene<N>,
         seen: &Observation<N>,
     ) -> Claims {
         let mut claims = Claims::default();
         let others = scene.meetings().iter().zip(seen.others.iter());
-        for (number, ((meeting, other), pair)) in (0_u8..).zip(others.zip(self.pairs.iter_mut())) {
+        let encounters = others.zip(self.encounters.iter_mut());
+        for (number, ((meeting, other), encounter)) in (0_u8..).zip(encounters) {
             let Some(other) = other else {
-                pair.1 = None;
+                encounter.other = None;
+                encounter.waiting.lose();
                 continue;
             };
-            let here = |entry: Option<f32>, vehicle: &Vehicle| {
-                entry
-                    .is_some_and(|entry| entry - vehicle.s <= rule.distance)
-                    .then_some(self.now)
+            let away = |entry: Option<f32>, vehicle: &Vehicle| entry.map(|entry| entry - vehicle.s);
+            let ego = away(entry(meeting, |z| z.ego), &seen.ego);
+            let far = away(entry(meeting, |z| z.other), other);
+            let here = |away: Option<f32>| {
+                let near = away.is_some_and(|metres| metres <= rule.distance);
+                NonZeroU32::new(self.now).filter(|_| near)
             };
-            pair.0 = pair.0.or(here(entry(meeting, |z| z.ego), &seen.ego));
-            pair.1 = pair.1.or(here(entry(meeting, |z| z.other), other));
-            if precedes(*pair, self.now, rule.tie, meeting.right_of_way) {
+            encounter.ego = encounter.ego.or(here(ego));
+            encounter.other = encounter.other.or(here(far));
+            // So near that both have arrived for the other's shield as well.
+            let near = |away: Option<f32>| {
+                away.is_some_and(|metres| metres <= rule.distance - 2.0 * contract.position_error)
+            };
+            let rest = Rest::of(contract, &seen.ego).min(Rest::of(contract, other));
+            let rest = match rest {
+                _ if encounter.ego.is_none() || encounter.other.is_none() => Rest::No,
+                Rest::Surely if !(near(ego) && near(far)) => Rest::Perhaps,
+                rest => rest,
+            };
+            if encounter.note::<R>(contract, rule, rest, self.now, meeting.right_of_way) {
                 claims.claim(number);
             }
         }
         claims
+    }
+
+    /// Nothing is seen: whoever has arrived may be at rest.
+    pub(crate) fn blind(&mut self, rule: Precedence) {
+        for Encounter {
+            ego,
+            other,
+            waiting,
+        } in &mut self.encounters
+        {
+            if ego.is_some() && other.is_some() {
+                waiting.note(Rest::Perhaps, rule.patience, 0, |_| false);
+            }
+        }
+    }
+}
+
+impl Encounter {
+    /// Whether the ego has precedence now that the two have been seen at `rest` or not.
+    fn note<R: Rules>(
+        &mut self,
+        contract: &Contract,
+        rule: Precedence,
+        rest: Rest,
+        now: u32,
+        right_of_way: RightOfWay,
+    ) -> bool {
+        let (ego, other) = (
+            self.ego.map(NonZeroU32::get),
+            self.other.map(NonZeroU32::get),
+        );
+        // Of three turns the first is the one's who should have given way.
+        let mine = |turn: u16| settled(ego, other, right_of_way) == Some(turn % 3 != 1);
+        self.waiting
+            .note(rest, rule.patience, R::grace(contract), mine);
+        match self.waiting.turn {
+            Turn::First => precedes((ego, other), now, rule.tie, right_of_way),
+            Turn::Past => false,
+            Turn::Ego => true,
+        }
     }
 }
 
@@ -97,6 +165,19 @@ fn precedes(
         RightOfWay::Ego => ego <= other.saturating_add(tie),
         // The other, if it has the right of way, may count one period less between the two arrivals.
         _ => other.saturating_sub(ego) > tie + 1,
+    }
+}
+
+/// Whether the ego comes before the other, so that the other knows as well: by the right of way, however
+/// long ago they arrived; without one, by their arrivals, however near, but for those a period apart.
+fn settled(ego: Option<u32>, other: Option<u32>, right_of_way: RightOfWay) -> Option<bool> {
+    match right_of_way {
+        RightOfWay::Ego => Some(true),
+        RightOfWay::Other => Some(false),
+        RightOfWay::Unsettled => {
+            let (ego, other) = (ego?, other?);
+            (ego.abs_diff(other) > 1).then_some(ego < other)
+        }
     }
 }
 

@@ -5,6 +5,7 @@ use super::hazard::Hazard;
 use super::margin::{self, Departure};
 use super::plan::Plan;
 use super::reach::Reach;
+use super::waiting;
 use crate::zone::Zone;
 
 /// The rules, one method each. [`Sound`] is the only implementation that drives.
@@ -68,6 +69,12 @@ pub trait Rules {
     #[must_use]
     fn sooner(a: &Hazard, b: &Hazard) -> bool {
         a.target < b.target
+    }
+
+    /// Periods from the end of one vehicle's turn to the other's.
+    #[must_use]
+    fn grace(contract: &Contract) -> u16 {
+        waiting::grace(contract)
     }
 
     /// What is left of a plan after its first command.
