@@ -154,6 +154,12 @@ mutant! { a_plan_that_forgets_to_stop_after_the_zone_is_caught, RestsWhereItClea
     }
 }
 
+mutant! { a_turn_that_begins_when_the_other_ends_is_caught, NoGrace,
+    fn grace(_: &Contract) -> u16 {
+        0
+    }
+}
+
 struct LeftForgotten;
 impl Rules for LeftForgotten {
     fn left(_: &Zone, _: f32) -> bool {

@@ -77,10 +77,20 @@ pub struct Precedence {
     pub tie: u16,
     /// Braking in m/s², in (0, 20], with which the other is expected to stop.
     pub braking: f32,
-    /// Periods for which a vehicle with precedence may rest while the other rests as well, before
-    /// precedence goes to the other, and so on in turn; 0 if it is never lost. Useful from about 10 on:
-    /// the first few periods of a turn are nobody's.
+    /// Periods for which a vehicle with precedence may rest, while the other rests as well, before precedence
+    /// goes to the other, and after twice, four times … as many back and forth; at least 5, or 0 if it is
+    /// never lost. The first few periods of a turn are nobody's, so that 10 or more is useful.
     pub patience: u16,
+}
+
+impl Precedence {
+    /// An all-way stop: 12 m, half a second, 3 m/s², and turns of 1.5 s, 3 s, 6 s, …
+    pub const ALL_WAY_STOP: Self = Self {
+        distance: 12.0,
+        tie: 5,
+        braking: 3.0,
+        patience: 15,
+    };
 }
 
 /// The first number of a [`Contract`] that is out of its range.
@@ -108,7 +118,7 @@ impl core::fmt::Display for ContractError {
             Self::Ego => "the ego's speed, acceleration or braking is out of range",
             Self::Other => "the others' speed, acceleration or braking is out of range",
             Self::Follower => "the follower's reaction time or braking is out of range",
-            Self::Precedence => "the distance or braking of the rule of precedence is out of range",
+            Self::Precedence => "a number of the rule of precedence is out of range, or it asks for turns of a vehicle that brakes or goes too gently",
         })
     }
 }
@@ -144,12 +154,7 @@ impl Contract {
 
     /// [`Contract::WORST_CASE`] among vehicles that keep the rule of precedence of an all-way stop.
     pub const ALL_WAY_STOP: Self = Self {
-        precedence: Some(Precedence {
-            distance: 12.0,
-            tie: 5,
-            braking: 3.0,
-            patience: 20,
-        }),
+        precedence: Some(Precedence::ALL_WAY_STOP),
         ..Self::WORST_CASE
     };
 
@@ -191,7 +196,7 @@ impl Contract {
             ),
             (
                 self.precedence
-                    .is_none_or(|p| p.patience == 0 || self.takes_turns(p)),
+                    .is_none_or(|p| p.patience == 0 || (p.patience >= 5 && self.takes_turns(p))),
                 E::Precedence,
             ),
         ];

@@ -30,7 +30,7 @@ use core::marker::PhantomData;
 use hazard::{Hazards, Passage};
 use memory::Memory;
 use plan::{Verified, best, passage_margin};
-use precedence::{Arrivals, Claims};
+use precedence::{Claims, Precedences};
 
 /// Accelerations of the grid, from full braking to full acceleration.
 const GRID: u8 = 13;
@@ -45,7 +45,7 @@ const NOSE: f32 = 0.5;
 pub struct Shield<const N: usize, R: Rules = Sound> {
     contract: Contract,
     memory: Memory<N>,
-    arrivals: Arrivals<N>,
+    precedences: Precedences<N>,
     rules: PhantomData<R>,
 }
 
@@ -68,7 +68,7 @@ impl<const N: usize, R: Rules> Shield<N, R> {
         Ok(Self {
             contract: contract.checked()?,
             memory: Memory::new(),
-            arrivals: Arrivals::new(),
+            precedences: Precedences::new(),
             rules: PhantomData,
         })
     }
@@ -100,7 +100,6 @@ impl<const N: usize, R: Rules> Shield<N, R> {
         proposal: f32,
     ) -> Decision {
         self.memory.tick();
-        self.arrivals.tick();
         let decision = match &observation.checked(scene.meetings().len()) {
             Ok(seen) => self.judge(scene, seen, proposal),
             Err(fault) => self.blind(*fault),
@@ -136,7 +135,7 @@ impl<const N: usize, R: Rules> Shield<N, R> {
 
     fn blind(&mut self, fault: Fault) -> Decision {
         if let Some(rule) = self.contract.precedence {
-            self.arrivals.blind(rule);
+            self.precedences.blind::<R>(&self.contract, rule);
         }
         Decision {
             acceleration: self.carry_on(),
@@ -150,7 +149,9 @@ impl<const N: usize, R: Rules> Shield<N, R> {
     fn judge(&mut self, scene: &Scene<N>, seen: &Observation<N>, proposal: f32) -> Decision {
         let breach = self.memory.note(&self.contract, seen);
         let claims = match self.contract.precedence {
-            Some(rule) => self.arrivals.note::<R>(&self.contract, rule, scene, seen),
+            Some(rule) => self
+                .precedences
+                .note::<R>(&self.contract, rule, scene, seen),
             None => Claims::default(),
         };
         let mut hazards = Hazards::new();

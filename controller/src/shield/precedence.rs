@@ -1,13 +1,15 @@
 //! Who goes first where two vehicles wait for each other.
+//!
+//! Who arrived first; and if that one does not take its turn, the other, and so on, as long as both rest.
+//! `docs/shield.md` shows why never both have precedence.
 
 use super::contract::{Contract, Precedence};
 use super::rules::Rules;
-use super::waiting::{Rest, Turn, Waiting};
+use super::waiting::{Rest, Stay};
 use crate::observation::{Observation, Vehicle};
 use crate::pair::RightOfWay;
 use crate::scene::{Meeting, Scene};
 use crate::zone::{Interval, Zone};
-use core::num::NonZeroU32;
 
 /// The others over which the ego has precedence.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -23,39 +25,44 @@ impl Claims {
     }
 }
 
-/// The period at which a vehicle arrived.
-type Arrival = Option<NonZeroU32>;
-
-/// What the ego remembers of itself and one other.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Encounter {
-    ego: Arrival,
-    other: Arrival,
-    waiting: Waiting,
-}
-
-/// When the ego and each other arrived at the zones that they share, and how long they have been waiting.
+/// What the ego remembers of how it and each other came to the zones that they share.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Arrivals<const N: usize> {
-    /// Periods since the start.
-    now: u32,
-    encounters: [Encounter; N],
+pub(crate) struct Precedences<const N: usize>([Pair; N]);
+
+/// The ego and one other.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Pair {
+    ego: Party,
+    other: Party,
+    turn: Turn,
 }
 
-impl<const N: usize> Arrivals<N> {
+/// One of the two.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Party {
+    /// Periods since it arrived, the first included, as long as the two have not both arrived; 0 before.
+    arrived: u16,
+    stay: Stay,
+}
+
+/// Whose turn it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Turn {
+    /// Whoever goes first by arrival and right of way.
+    #[default]
+    First,
+    /// Not the ego's.
+    Past,
+    /// The ego's.
+    Ego,
+}
+
+impl<const N: usize> Precedences<N> {
     pub(crate) fn new() -> Self {
-        Self {
-            now: 0,
-            encounters: [Encounter::default(); N],
-        }
+        Self([Pair::default(); N])
     }
 
-    /// One period has passed.
-    pub(crate) fn tick(&mut self) {
-        self.now = self.now.saturating_add(1);
-    }
-
-    /// Notes who has arrived and who waits, and says over whom the ego has precedence.
+    /// One period later: notes who has arrived and who rests, and says over whom the ego has precedence.
     pub(crate) fn note<R: Rules>(
         &mut self,
         contract: &Contract,
@@ -65,76 +72,124 @@ impl<const N: usize> Arrivals<N> {
     ) -> Claims {
         let mut claims = Claims::default();
         let others = scene.meetings().iter().zip(seen.others.iter());
-        let encounters = others.zip(self.encounters.iter_mut());
-        for (number, ((meeting, other), encounter)) in (0_u8..).zip(encounters) {
+        for (number, ((meeting, other), pair)) in (0_u8..).zip(others.zip(self.0.iter_mut())) {
             let Some(other) = other else {
-                encounter.other = None;
-                encounter.waiting.lose();
+                pair.lose();
                 continue;
             };
-            let away = |entry: Option<f32>, vehicle: &Vehicle| entry.map(|entry| entry - vehicle.s);
-            let ego = away(entry(meeting, |z| z.ego), &seen.ego);
-            let far = away(entry(meeting, |z| z.other), other);
-            let here = |away: Option<f32>| {
-                let near = away.is_some_and(|metres| metres <= rule.distance);
-                NonZeroU32::new(self.now).filter(|_| near)
-            };
-            encounter.ego = encounter.ego.or(here(ego));
-            encounter.other = encounter.other.or(here(far));
-            // So near that both have arrived for the other's shield as well.
-            let near = |away: Option<f32>| {
-                away.is_some_and(|metres| metres <= rule.distance - 2.0 * contract.position_error)
-            };
-            let rest = Rest::of(contract, &seen.ego).min(Rest::of(contract, other));
-            let rest = match rest {
-                _ if encounter.ego.is_none() || encounter.other.is_none() => Rest::No,
-                Rest::Surely if !(near(ego) && near(far)) => Rest::Perhaps,
-                rest => rest,
-            };
-            if encounter.note::<R>(contract, rule, rest, self.now, meeting.right_of_way) {
+            pair.tick();
+            pair.ego
+                .note(contract, rule, entry(meeting, |z| z.ego), &seen.ego);
+            pair.other
+                .note(contract, rule, entry(meeting, |z| z.other), other);
+            pair.pass::<R>(contract, rule, meeting.right_of_way);
+            if pair.claims(rule, meeting.right_of_way) {
                 claims.claim(number);
             }
         }
         claims
     }
 
-    /// Nothing is seen: whoever has arrived may be at rest.
-    pub(crate) fn blind(&mut self, rule: Precedence) {
-        for Encounter {
-            ego,
-            other,
-            waiting,
-        } in &mut self.encounters
-        {
-            if ego.is_some() && other.is_some() {
-                waiting.note(Rest::Perhaps, rule.patience, 0, |_| false);
+    /// One period later, in which nothing was seen: whoever had arrived may have rested.
+    pub(crate) fn blind<R: Rules>(&mut self, contract: &Contract, rule: Precedence) {
+        for pair in &mut self.0 {
+            pair.tick();
+            for party in [&mut pair.ego, &mut pair.other] {
+                if party.arrived > 0 {
+                    party.stay.note(Rest::Perhaps);
+                }
             }
+            pair.pass::<R>(contract, rule, RightOfWay::Unsettled);
         }
     }
 }
 
-impl Encounter {
-    /// Whether the ego has precedence now that the two have been seen at `rest` or not.
-    fn note<R: Rules>(
+impl Party {
+    fn note(
         &mut self,
         contract: &Contract,
         rule: Precedence,
-        rest: Rest,
-        now: u32,
-        right_of_way: RightOfWay,
-    ) -> bool {
-        let (ego, other) = (
-            self.ego.map(NonZeroU32::get),
-            self.other.map(NonZeroU32::get),
-        );
-        // Of three turns the first is the one's who should have given way.
-        let mine = |turn: u16| settled(ego, other, right_of_way) == Some(turn % 3 != 1);
-        self.waiting
-            .note(rest, rule.patience, R::grace(contract), mine);
-        match self.waiting.turn {
-            Turn::First => precedes((ego, other), now, rule.tie, right_of_way),
+        entry: Option<f32>,
+        vehicle: &Vehicle,
+    ) {
+        let within = |limit: f32| entry.is_some_and(|entry| entry - vehicle.s <= limit);
+        if self.arrived == 0 && within(rule.distance) {
+            self.arrived = 1;
+        }
+        self.stay.note(match Rest::of(contract, vehicle) {
+            _ if self.arrived == 0 => Rest::No,
+            // It has to have arrived for the other's shield as well.
+            Rest::Surely if !within(rule.distance - 2.0 * contract.position_error) => Rest::Perhaps,
+            rest => rest,
+        });
+    }
+}
+
+impl Pair {
+    /// One period has passed.
+    fn tick(&mut self) {
+        let (ego, other) = (&mut self.ego.arrived, &mut self.other.arrived);
+        match (*ego, *other) {
+            (1.., 0) => *ego = ego.saturating_add(1),
+            (0, 1..) => *other = other.saturating_add(1),
+            _ => {}
+        }
+    }
+
+    /// The other is not to be seen.
+    fn lose(&mut self) {
+        self.other = Party::default();
+        if self.turn == Turn::Ego {
+            self.turn = Turn::Past;
+        }
+    }
+
+    /// Whether the ego has precedence.
+    fn claims(&self, rule: Precedence, right_of_way: RightOfWay) -> bool {
+        match self.turn {
+            Turn::First => precedes(self.ego.arrived, self.other.arrived, rule.tie, right_of_way),
             Turn::Past => false,
             Turn::Ego => true,
+        }
+    }
+
+    /// Passes the turn on. While both rest, a turn begins after `patience` periods, twice, four times, … as many, and its
+    /// first few periods are nobody's; as soon as one of them moves, the turn stays whose it is.
+    fn pass<R: Rules>(&mut self, contract: &Contract, rule: Precedence, right_of_way: RightOfWay) {
+        let (ego, other) = (self.ego.stay, self.other.stay);
+        let perhaps = ego.perhaps.min(other.perhaps);
+        let surely = ego.surely.min(other.surely);
+        let patiences = perhaps.checked_div(rule.patience).unwrap_or(0);
+        let Some(turn) = patiences.checked_ilog2() else {
+            return;
+        };
+        let begins = rule.patience.saturating_mul(1 << turn);
+        if R::ends(perhaps, surely, begins, rule.patience) {
+            self.turn = Turn::Past;
+        }
+        // Periods that are not counted any more are in nobody's turn.
+        let counted = ego.perhaps < u16::MAX && other.perhaps < u16::MAX;
+        // The first turn is the one's who gives way, the second the other's, and so on.
+        let mine = self.first(right_of_way) == Some(turn % 2 == 1);
+        if surely == begins.saturating_add(R::grace(contract)) && counted && mine {
+            self.turn = Turn::Ego;
+        }
+    }
+
+    /// Whether the ego comes before the other while both rest, so that the other knows it, too: by the right of
+    /// way; without one, by how much earlier it arrived and came to rest, both together.
+    fn first(&self, right_of_way: RightOfWay) -> Option<bool> {
+        let earlier = |one: Party, two: Party| {
+            let [a, b] = [one, two].map(|party| i32::from(party.arrived));
+            a - b + i32::from(one.stay.surely) - i32::from(two.stay.perhaps) > 1
+        };
+        match right_of_way {
+            RightOfWay::Ego => Some(true),
+            RightOfWay::Other => Some(false),
+            RightOfWay::Unsettled => {
+                let first = earlier(self.ego, self.other);
+                (first || earlier(self.other, self.ego)).then_some(first)
+            }
         }
     }
 }
@@ -150,68 +205,21 @@ fn entry(meeting: &Meeting, side: fn(&Zone) -> Interval) -> Option<f32> {
         })
 }
 
-/// Whether the ego goes first. Of two vehicles that see the same, at most one does.
-fn precedes(
-    (ego, other): (Option<u32>, Option<u32>),
-    now: u32,
-    tie: u16,
-    right_of_way: RightOfWay,
-) -> bool {
-    let Some(ego) = ego else { return false };
-    // An other that has not arrived yet arrives now at the earliest.
-    let other = other.unwrap_or(now);
-    let tie = u32::from(tie);
-    match right_of_way {
-        RightOfWay::Ego => ego <= other.saturating_add(tie),
-        // The other, if it has the right of way, may count one period less between the two arrivals.
-        _ => other.saturating_sub(ego) > tie + 1,
+/// Whether the ego goes first, which came, as the other, so many periods ago, or not yet (0). Of two vehicles
+/// that see the same, at most one does.
+fn precedes(ego: u16, other: u16, tie: u16, right_of_way: RightOfWay) -> bool {
+    if ego == 0 {
+        return false;
     }
-}
-
-/// Whether the ego comes before the other, so that the other knows as well: by the right of way, however
-/// long ago they arrived; without one, by their arrivals, however near, but for those a period apart.
-fn settled(ego: Option<u32>, other: Option<u32>, right_of_way: RightOfWay) -> Option<bool> {
+    // An other that has not arrived yet arrives now at the earliest.
+    let ahead = i32::from(ego) - i32::from(other.max(1));
+    let tie = i32::from(tie);
     match right_of_way {
-        RightOfWay::Ego => Some(true),
-        RightOfWay::Other => Some(false),
-        RightOfWay::Unsettled => {
-            let (ego, other) = (ego?, other?);
-            (ego.abs_diff(other) > 1).then_some(ego < other)
-        }
+        RightOfWay::Ego => ahead >= -tie,
+        // The other, if it has the right of way, may count one period less between the two arrivals.
+        _ => ahead > tie + 1,
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    #[test]
-    fn the_first_goes_first_and_a_tie_is_the_right_of_ways() {
-        use RightOfWay::{Ego, Other, Unsettled};
-        let first = |pair, right_of_way| precedes(pair, 100, 5, right_of_way);
-        assert!(first((Some(10), Some(17)), Other));
-        assert!(!first((Some(17), Some(10)), Ego));
-        assert!(first((Some(12), Some(10)), Ego));
-        assert!(!first((Some(10), Some(12)), Unsettled));
-        assert!(first((Some(10), None), Unsettled));
-        assert!(!first((None, None), Ego));
-        // One period beyond a tie is the right of way's if it came first, and nobody's if it came second.
-        assert!(first((Some(10), Some(16)), Ego) && !first((Some(16), Some(10)), Other));
-        assert!(!first((Some(16), Some(10)), Ego) && !first((Some(10), Some(16)), Other));
-    }
-
-    proptest! {
-        #[test]
-        fn at_most_one_goes_first(
-            a in prop::option::of(0_u32..40), b in prop::option::of(0_u32..40),
-            skew in 0_u32..2, tie in 0_u16..10,
-        ) {
-            let now = 40;
-            let one = precedes((a, b), now, tie, RightOfWay::Ego);
-            // The other one may have counted one arrival a period later.
-            let b = b.map(|b| b + skew);
-            prop_assert!(!(one && precedes((b, a), now, tie, RightOfWay::Other)));
-        }
-    }
-}
+mod tests;

@@ -71,7 +71,15 @@ pub trait Rules {
         a.target < b.target
     }
 
-    /// Periods from the end of one vehicle's turn to the other's.
+    /// Whether nobody's turn is left from before, when both have rested for so many periods: a new one
+    /// begins, or they may have moved since the last one began.
+    #[must_use]
+    fn ends(perhaps: u16, surely: u16, begins: u16, patience: u16) -> bool {
+        let due = perhaps.checked_rem(patience) == Some(0);
+        (due && (perhaps == begins || surely < begins)) || perhaps == u16::MAX
+    }
+
+    /// Periods from the end of one vehicle's turn to the beginning of the other's.
     #[must_use]
     fn grace(contract: &Contract) -> u16 {
         waiting::grace(contract)

@@ -3,6 +3,7 @@
 use super::OTHERS;
 use crate::driver::State;
 use crate::overlap::OrientedBox;
+use cede_controller::shield::contract::Precedence;
 use cede_controller::shield::margin::safe_gap;
 use cede_controller::{Contract, Footprint, Path, Point, RightOfWay, Route, Scene, Zone};
 use rand::RngExt;
@@ -53,7 +54,7 @@ impl Setup {
 
     /// The set-ups of a campaign, each with its name.
     #[must_use]
-    pub fn all() -> [(&'static str, Self); 12] {
+    pub fn all() -> [(&'static str, Self); 13] {
         let among = |vehicles| Self {
             vehicles,
             ..Self::ADVERSARIES
@@ -74,6 +75,15 @@ impl Setup {
             steps: 600,
             ..Self::everyone(stop, 3)
         };
+        let mut turns = Self {
+            steps: 200,
+            ..at_rest
+        };
+        turns.contract.speed_error = 0.3;
+        turns.contract.precedence = Some(Precedence {
+            patience: 5,
+            ..Precedence::ALL_WAY_STOP
+        });
         [
             ("one adversary", among(2)),
             ("three adversaries", among(4)),
@@ -87,6 +97,7 @@ impl Setup {
             ("all shielded, merging", merging(Self::everyone(worst, 4))),
             ("all shielded, precedence", Self::everyone(stop, 5)),
             ("from rest, precedence", at_rest),
+            ("from rest, short turns", turns),
         ]
     }
 }
