@@ -10,6 +10,7 @@ mod interrupt;
 mod judge;
 mod report;
 mod scene;
+mod settings;
 mod source;
 mod table;
 mod training;

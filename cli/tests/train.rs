@@ -2,7 +2,7 @@
 #![cfg(unix)]
 
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
 /// `cede train` of small networks on a few synthetic encounters, into `folder`.
@@ -45,11 +45,15 @@ fn interrupt(mut command: Command, log: &Path) -> Option<i32> {
         }
         std::thread::sleep(Duration::from_millis(2));
     }
+    press_ctrl_c(&child);
+    child.wait().unwrap().code()
+}
+
+fn press_ctrl_c(child: &Child) {
     let interrupted = Command::new("kill")
         .args(["-INT", &child.id().to_string()])
         .status();
     assert!(interrupted.unwrap().success());
-    child.wait().unwrap().code()
 }
 
 #[test]
@@ -106,8 +110,58 @@ fn reproduce_gives_rows_baselines_and_curves_and_takes_up_what_is_there() {
     assert_eq!(made(), before, "it was trained again");
 }
 
-/// Runs `command` where no file may grow beyond `kib` KiB, as on a full disk.
-fn cramped(command: &Command, kib: u32) -> (Option<i32>, String) {
+/// Whether the child answers to Ctrl-C itself.
+#[cfg(target_os = "linux")]
+fn listens(child: &Child) -> bool {
+    let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap();
+    let caught = status.lines().find_map(|l| l.strip_prefix("SigCgt:"));
+    const SIGINT: u64 = 2;
+    u64::from_str_radix(caught.unwrap().trim(), 16).unwrap() >> (SIGINT - 1) & 1 == 1
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn an_interrupted_reproduce_goes_on_to_the_same_bits() {
+    let reproduce = |folder: &Path| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_cede"));
+        command
+            .args(["reproduce", "--data", "synthetic", "--encounters", "20"])
+            .args(["--rows", "apg", "--seeds", "2", "--out"])
+            .arg(folder);
+        for set in [
+            "width=16",
+            "batch=16",
+            "updates=200",
+            "refinement.updates=400",
+        ] {
+            command.args(["--set", &format!("apg.{set}")]);
+        }
+        command
+    };
+    let [whole, parts] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+    succeed(&mut reproduce(whole.path()));
+    let mut child = reproduce(parts.path())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    while !listens(&child) {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    std::thread::sleep(Duration::from_millis(200));
+    press_ctrl_c(&child);
+    assert_eq!(child.wait().unwrap().code(), Some(4));
+    assert!(!parts.path().join("report.html").exists());
+    succeed(reproduce(parts.path()).arg("--resume"));
+    for file in ["apg-0.cede", "apg-1.cede", "apg-1.curve.json"] {
+        let read = |folder: &Path| std::fs::read(folder.join(file)).unwrap();
+        assert_eq!(read(parts.path()), read(whole.path()), "{file}");
+    }
+    let rows = |folder: &Path| std::fs::read(folder.join("rows.json")).unwrap();
+    assert_eq!(rows(parts.path()), rows(whole.path()));
+}
+
+/// `command` where no file may grow beyond `kib` KiB, as on a full disk.
+fn confined(command: &Command, kib: u32) -> Command {
     let mut shell = Command::new("sh");
     shell
         .arg("-c")
@@ -115,9 +169,7 @@ fn cramped(command: &Command, kib: u32) -> (Option<i32>, String) {
         .arg("sh")
         .arg(command.get_program())
         .args(command.get_args());
-    let output = shell.output().unwrap();
-    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
-    (output.status.code(), stderr)
+    shell
 }
 
 #[test]
@@ -126,13 +178,48 @@ fn where_nothing_can_be_written_the_old_file_stays() {
     succeed(&mut train("bc", folder.path()));
     let file = folder.path().join("driver.cede");
     let before = std::fs::read(&file).unwrap();
-    let (code, stderr) = cramped(train("bc", folder.path()).args(["--seed", "1"]), 1);
-    assert_eq!(code, Some(3), "{stderr}");
+    let mut again = train("bc", folder.path());
+    let output = confined(again.args(["--seed", "1"]), 1).output().unwrap();
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{stderr}");
     assert!(
         stderr.contains("cannot write") && stderr.contains("untouched"),
         "{stderr}"
     );
     assert_eq!(std::fs::read(&file).unwrap(), before);
+}
+
+#[test]
+fn where_no_checkpoint_can_be_written_the_last_one_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let logs = ["first", "second"].map(|name| folder.path().join(name));
+    let mut first = train("sac", folder.path());
+    first.arg("--log").arg(&logs[0]);
+    assert_eq!(interrupt(first, &logs[0]), Some(4));
+    let checkpoint = folder.path().join("driver.checkpoint");
+    let before = std::fs::read(&checkpoint).unwrap();
+    let kib = 16;
+    assert!(before.len() > 2 * kib * 1024, "{}", before.len());
+    let mut second = train("sac", folder.path());
+    second.arg("--resume").arg("--log").arg(&logs[1]);
+    let second = confined(&second, u32::try_from(kib).unwrap());
+    assert_eq!(interrupt(second, &logs[1]), Some(3));
+    assert_eq!(std::fs::read(&checkpoint).unwrap(), before);
+}
+
+#[test]
+fn settings_that_no_training_can_begin_with_are_refused_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = train("apg", folder.path())
+        .args(["--set", "width=100000000000"])
+        .output()
+        .unwrap();
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{stderr}");
+    assert!(
+        stderr.contains("width must be a multiple of 16"),
+        "{stderr}"
+    );
 }
 
 #[test]

@@ -56,6 +56,26 @@ impl Default for Cost {
     }
 }
 
+/// What places are to be driven like.
+#[derive(Clone, Copy, Debug)]
+pub struct Aim<'a> {
+    /// What it costs to drive unlike the humans.
+    pub cost: &'a Cost,
+    /// Encounters of a lower number are driven like the humans, all others like the former network.
+    pub own: usize,
+    /// The former network, if there is one.
+    pub former: Option<Former<'a>>,
+}
+
+/// A network that another one is not to depart from.
+#[derive(Clone, Copy, Debug)]
+pub struct Former<'a> {
+    /// It sees what the other one sees.
+    pub network: &'a Network,
+    /// Weight of the squared departure from each of its accelerations, in s⁴/m².
+    pub weight: f32,
+}
+
 /// Metres by which the second vehicle should be short of its conflict point when the first arrives,
 /// and the most that the first one's own shortfall counts.
 const ORDER_MARGIN: f32 = 2.0;
@@ -74,6 +94,8 @@ pub struct ClosedLoop {
     last: Vec<[State; 2]>,
     inputs: Vec<f32>,
     delta: Delta,
+    /// What the former network makes of a step.
+    former: Tape,
 }
 
 /// One step of a batch.
@@ -115,8 +137,7 @@ impl ClosedLoop {
                 step.pairs.push(pairs);
             }
             let output = network.forward(&self.inputs, &mut step.tape);
-            let command =
-                |row: &[f32]| [row[0], row[1]].map(|mean| MAX_ACCELERATION * libm::tanhf(mean));
+            let command = |row: &[f32]| [row[0], row[1]].map(acceleration);
             let width = output.len() / (2 * places.len());
             step.commands.clear();
             let both = output.chunks_exact(2 * width);
@@ -143,7 +164,7 @@ impl ClosedLoop {
         inputs: &Inputs,
         sights: &[Sight<'_>],
         places: &[Start],
-        cost: &Cost,
+        aim: &Aim<'_>,
         gradient: &mut [f32],
     ) -> f32 {
         let horizon = self.steps.len();
@@ -154,21 +175,33 @@ impl ClosedLoop {
         for t in (0..horizon).rev() {
             let (step, after) = (&self.steps[t], self.steps.get(t + 1));
             let after = after.map_or(&self.last, |next| &next.states);
+            let held = aim
+                .former
+                .filter(|_| places.iter().any(|place| place.encounter >= aim.own));
+            if let Some(former) = held {
+                former.network.forward(step.tape.input(), &mut self.former);
+            }
             self.delta.values.clear();
             for (k, place) in places.iter().enumerate() {
-                let encounter = sights[place.encounter].encounter;
-                total +=
-                    share * cost.of(encounter, place.step + t + 1, after[k], share, &mut by[k]);
-                for (i, by) in by[k].iter_mut().enumerate() {
-                    let [own, expected] = step.commands[k][i];
-                    let (by_state, by_own) = through(step.states[k][i], own, *by);
-                    *by = by_state;
-                    let surprise = expected - step.commands[k][1 - i][0];
-                    let by_expected = share * 2.0 * cost.expectation * surprise;
+                let by_commands = if place.encounter < aim.own {
+                    let encounter = sights[place.encounter].encounter;
+                    let step_of = place.step + t + 1;
+                    total += share * aim.cost.of(encounter, step_of, after[k], share, &mut by[k]);
+                    step.by_commands(k, aim.cost.expectation * share, &mut by[k])
+                } else if let Some(former) = held {
+                    let rows = self.former.output()[2 * k * width..].chunks_exact(width);
+                    let (cost, by) = step.departure(k, rows, former.weight * share);
+                    total += cost;
+                    by
+                } else {
+                    Default::default()
+                };
+                for (by, commands) in by_commands.iter().zip(&step.commands[k]) {
                     let squash = |a: f32| MAX_ACCELERATION - a * a / MAX_ACCELERATION;
+                    let both = by.iter().zip(commands);
                     self.delta
                         .values
-                        .extend([by_own * squash(own), by_expected * squash(expected)]);
+                        .extend(both.map(|(by, a)| by * squash(*a)));
                     self.delta.values.extend((2..width).map(|_| 0.0));
                 }
             }
@@ -177,6 +210,45 @@ impl ClosedLoop {
         }
         total
     }
+}
+
+impl Step {
+    /// Derivatives of the costs of place `k` with respect to what each vehicle commands and expects,
+    /// and `by` taken from the states after the step to those before it.
+    fn by_commands(&self, k: usize, expectation: f32, by: &mut ByStates) -> [[f32; 2]; 2] {
+        let commands = self.commands[k];
+        std::array::from_fn(|i| {
+            let [own, expected] = commands[i];
+            let (by_state, by_own) = through(self.states[k][i], own, by[i]);
+            by[i] = by_state;
+            let surprise = expected - commands[1 - i][0];
+            [by_own, 2.0 * expectation * surprise]
+        })
+    }
+
+    /// What it costs in place `k` to depart from the commands whose means are in `rows`, and the
+    /// derivatives with respect to what each vehicle commands and expects.
+    fn departure<'r>(
+        &self,
+        k: usize,
+        rows: impl Iterator<Item = &'r [f32]>,
+        weight: f32,
+    ) -> (f32, [[f32; 2]; 2]) {
+        let (mut cost, mut by) = (0.0, [[0.0; 2]; 2]);
+        for ((commands, row), by) in self.commands[k].iter().zip(rows).zip(&mut by) {
+            for ((command, mean), by) in commands.iter().zip(row).zip(by) {
+                let apart = command - acceleration(*mean);
+                cost += weight * apart * apart;
+                *by = 2.0 * weight * apart;
+            }
+        }
+        (cost, by)
+    }
+}
+
+/// The acceleration (m/s²) that a mean commands.
+fn acceleration(mean: f32) -> f32 {
+    MAX_ACCELERATION * libm::tanhf(mean)
 }
 
 impl Delta {
@@ -330,5 +402,102 @@ pub(crate) mod states {
     pub(crate) fn deserialize<'d, D: Deserializer<'d>>(from: D) -> Result<[State; 2], D::Error> {
         let states = <[(f32, f32); 2]>::deserialize(from)?;
         Ok(states.map(|(s, v)| State { s, v }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cede_controller::FeatureSet;
+    use cede_sim::Dataset;
+    use rand::SeedableRng;
+    use rand_pcg::Pcg64;
+
+    /// The cost of driving a few places for some steps with a small network, and its gradient.
+    fn cost(
+        dataset: &Dataset,
+        [network, former]: [&Network; 2],
+        own: usize,
+        steps: usize,
+    ) -> (f32, Vec<f32>) {
+        let sights: Vec<Sight<'_>> = dataset.encounters.iter().map(Sight::new).collect();
+        let pairs: Vec<Pair> = sights.iter().flat_map(Sight::recorded).collect();
+        let inputs = Inputs::fit(FeatureSet::Route, &pairs);
+        let places: Vec<Start> = (0..12)
+            .map(|encounter| Start {
+                encounter,
+                step: 0,
+                // Fast enough not to come to rest, where the derivative is an estimate.
+                states: [0, 1].map(|i| State {
+                    s: dataset.encounters[encounter].participants[i].record[0].s,
+                    v: 6.0 + encounter as f32 / 8.0,
+                }),
+            })
+            .collect();
+        let cost = Cost {
+            // What the other does is taken as given there.
+            expectation: 0.0,
+            ..Cost::default()
+        };
+        let former = Some(Former {
+            network: former,
+            weight: 2.0,
+        });
+        let aim = Aim {
+            cost: &cost,
+            own,
+            former,
+        };
+        let (mut loops, mut gradient) =
+            (ClosedLoop::default(), vec![0.0; network.parameters().len()]);
+        loops.drive(network, &inputs, &sights, &places, steps);
+        let total = loops.back(network, &inputs, &sights, &places, &aim, &mut gradient);
+        (total, gradient)
+    }
+
+    fn network(seed: u64) -> Network {
+        let count = FeatureSet::Route.count();
+        Network::new(&[count, 16, 16, 16, 4], &mut Pcg64::seed_from_u64(seed))
+    }
+
+    fn assert_gradient(own: usize, steps: usize) {
+        let dataset = Dataset::synthetic(12, 3);
+        let (mut network, former) = (network(1), network(2));
+        let (_, gradient) = cost(&dataset, [&network, &former], own, steps);
+        let last = gradient.len() - 4;
+        for parameter in [5, 100, 300, 600, last - 30, last - 60, last] {
+            let (old, h) = (network.parameters()[parameter], 5e-3);
+            let mut at = |x: f32| {
+                network.parameters_mut()[parameter] = x;
+                cost(&dataset, [&network, &former], own, steps).0
+            };
+            let expected = (at(old + h) - at(old - h)) / (2.0 * h);
+            at(old);
+            let error = (gradient[parameter] - expected).abs();
+            assert!(
+                error < 0.02 * (0.1 + expected.abs()),
+                "parameter {parameter}: {} against {expected}",
+                gradient[parameter]
+            );
+        }
+    }
+
+    #[test]
+    fn the_gradient_of_driving_like_the_humans_agrees_with_finite_differences() {
+        assert_gradient(usize::MAX, 4);
+    }
+
+    #[test]
+    fn the_gradient_of_driving_like_the_former_network_agrees_with_finite_differences() {
+        // One step: where it is held, the network does not answer for the states it gets into.
+        assert_gradient(0, 1);
+    }
+
+    #[test]
+    fn driving_as_before_costs_nothing() {
+        let network = network(3);
+        let dataset = Dataset::synthetic(12, 3);
+        let (total, gradient) = cost(&dataset, [&network, &network], 0, 4);
+        assert!(total == 0.0 && gradient.iter().all(|g| *g == 0.0));
     }
 }

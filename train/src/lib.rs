@@ -23,6 +23,7 @@ pub mod matmul;
 pub mod network;
 pub mod pilot;
 pub mod provenance;
+pub mod ranges;
 pub mod replay;
 pub mod run;
 pub mod sac;

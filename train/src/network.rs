@@ -38,6 +38,12 @@ pub struct Tape {
 }
 
 impl Tape {
+    /// The network's inputs, one row a sample.
+    #[must_use]
+    pub fn input(&self) -> &[f32] {
+        self.values.first().map_or(&[], Vec::as_slice)
+    }
+
     /// The network's outputs, one row a sample.
     #[must_use]
     pub fn output(&self) -> &[f32] {

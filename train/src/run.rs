@@ -1,6 +1,6 @@
 //! A training run of any algorithm, as the command line sees it.
 
-use crate::apg::{self, Apg};
+use crate::apg::{self, Apg, Refinement};
 use crate::bc::{self, Bc};
 use crate::closed_loop::Cost;
 use crate::episodes::{Course, Reward};
@@ -87,29 +87,32 @@ impl Algorithm {
                 },
                 ..settings
             }),
-            // More updates fit the few recorded encounters better, and those held out worse.
+            // More updates fit the few recorded encounters better, and those held out worse: that is
+            // for the refinement, which is held to what the short trainings agree on.
             Settings::Apg(settings) => Settings::Apg(apg::Settings {
+                members: 2,
                 updates: 400,
                 batch: 128,
                 carry_on: 0.7,
                 clip: 10.0,
                 cost: Cost {
-                    gap: 1.5,
+                    gap: 2.0,
+                    contact: 30.0,
                     ..settings.cost
+                },
+                refinement: Refinement {
+                    updates: 1200,
+                    ..settings.refinement
                 },
                 ..settings
             }),
         }
     }
 
-    /// Networks that `cede reproduce` trains for one driver and puts side by side, so that it acts as
-    /// they do on average: which encounters a network misjudges has much to do with how it began.
+    /// Whether it makes use of encounters beside those that it is judged on.
     #[must_use]
-    pub const fn members(self) -> u64 {
-        match self {
-            Self::Apg => 2,
-            _ => 1,
-        }
+    pub const fn looks_beside(self) -> bool {
+        matches!(self, Self::Apg)
     }
 }
 
@@ -164,7 +167,8 @@ fn merge(mut base: toml::Table, over: &toml::Table) -> toml::Table {
 pub struct Lessons<'e> {
     /// The encounters to be judged on, as episodes.
     pub courses: Vec<Course<'e>>,
-    /// The encounters as what their vehicles see; the first [`Lessons::own`] are those to be judged on.
+    /// The encounters as what their vehicles see; the first [`Lessons::own`] are those to be judged on,
+    /// and at the others a refinement holds the network to what it was.
     pub sights: Vec<Sight<'e>>,
     /// See [`Lessons::sights`].
     pub own: usize,
@@ -173,10 +177,10 @@ pub struct Lessons<'e> {
 }
 
 impl<'e> Lessons<'e> {
-    /// Prepares the encounters to be judged on, and those to learn from beside them.
+    /// Prepares the encounters to be judged on, and those beside them.
     #[must_use]
-    pub fn new(own: &[&'e Encounter], more: &'e [Encounter]) -> Self {
-        let all = own.iter().copied().chain(more);
+    pub fn new(own: &[&'e Encounter], beside: &[&'e Encounter]) -> Self {
+        let all = own.iter().chain(beside).copied();
         Self {
             courses: own.iter().map(|encounter| Course::new(encounter)).collect(),
             sights: all.map(Sight::new).collect(),
@@ -190,21 +194,21 @@ impl<'e> Lessons<'e> {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Progress {
     /// Of behaviour cloning.
-    Bc(bc::Progress),
+    Bc(Box<bc::Progress>),
     /// Of SAC and its relatives.
     Sac(Box<sac::Progress>),
     /// Of the analytic policy gradient.
-    Apg(apg::Progress),
+    Apg(Box<apg::Progress>),
 }
 
 /// A run of any algorithm.
 pub enum Run<'e> {
     /// Behaviour cloning.
-    Bc(Bc),
+    Bc(Box<Bc>),
     /// SAC and its relatives.
     Sac(Box<Sac<'e>>),
     /// The analytic policy gradient.
-    Apg(Apg<'e>),
+    Apg(Box<Apg<'e>>),
 }
 
 /// What a slice of work brought.
@@ -227,15 +231,17 @@ impl<'e> Run<'e> {
     #[must_use]
     pub fn new(settings: Settings, lessons: &'e Lessons<'e>, seed: u64) -> Self {
         match settings {
-            Settings::Bc(settings) => {
-                Self::Bc(Bc::new(settings, &lessons.sights[..lessons.own], seed))
-            }
+            Settings::Bc(settings) => Self::Bc(Box::new(Bc::new(
+                settings,
+                &lessons.sights[..lessons.own],
+                seed,
+            ))),
             Settings::Sac(settings) => {
                 Self::Sac(Box::new(Sac::new(settings, &lessons.courses, seed)))
             }
             Settings::Apg(settings) => {
                 let run = Apg::new(settings, &lessons.sights, lessons.own, seed);
-                Self::Apg(run.with_claims(&lessons.claims))
+                Self::Apg(Box::new(run.with_claims(&lessons.claims)))
             }
         }
     }
@@ -244,15 +250,16 @@ impl<'e> Run<'e> {
     #[must_use]
     pub fn resume(progress: Progress, lessons: &'e Lessons<'e>) -> Self {
         match progress {
-            Progress::Bc(progress) => {
-                Self::Bc(Bc::resume(progress, &lessons.sights[..lessons.own]))
-            }
+            Progress::Bc(progress) => Self::Bc(Box::new(Bc::resume(
+                *progress,
+                &lessons.sights[..lessons.own],
+            ))),
             Progress::Sac(progress) => {
                 Self::Sac(Box::new(Sac::resume(*progress, &lessons.courses)))
             }
             Progress::Apg(progress) => {
-                let run = Apg::resume(progress, &lessons.sights, lessons.own);
-                Self::Apg(run.with_claims(&lessons.claims))
+                let run = Apg::resume(*progress, &lessons.sights, lessons.own);
+                Self::Apg(Box::new(run.with_claims(&lessons.claims)))
             }
         }
     }
@@ -261,9 +268,9 @@ impl<'e> Run<'e> {
     #[must_use]
     pub fn progress(&self) -> Progress {
         match self {
-            Self::Bc(run) => Progress::Bc(run.progress().clone()),
+            Self::Bc(run) => Progress::Bc(Box::new(run.progress().clone())),
             Self::Sac(run) => Progress::Sac(Box::new(run.progress().clone())),
-            Self::Apg(run) => Progress::Apg(run.progress().clone()),
+            Self::Apg(run) => Progress::Apg(Box::new(run.progress().clone())),
         }
     }
 
@@ -371,7 +378,10 @@ mod tests {
     fn small(algorithm: Algorithm) -> Settings {
         let set = match algorithm {
             Algorithm::Bc => "updates = 100\nwidth = 16\nbatch = 64",
-            Algorithm::Apg => "updates = 30\nwidth = 16\nbatch = 80\nhorizon = 6",
+            Algorithm::Apg => {
+                "updates = 12\nwidth = 16\nbatch = 80\nhorizon = 6\nmembers = 2\n\
+                 refinement = { updates = 10, places = 30 }"
+            }
             _ => {
                 "episodes = 60\nwidth = 16\nbatch = 32\nparallel = 4\nsteps_per_update = 8\n\
                  buffer = 500\nbuffer_minimum = 50\ncentred = true"
@@ -384,14 +394,15 @@ mod tests {
     fn every_algorithm_goes_on_from_a_checkpoint_bit_for_bit() {
         let dataset = Dataset::synthetic(8, 4);
         let encounters: Vec<&Encounter> = dataset.encounters.iter().take(8).collect();
-        let lessons = Lessons::new(&encounters, &[]);
+        let beside: Vec<&Encounter> = dataset.encounters.iter().skip(8).take(4).collect();
+        let lessons = Lessons::new(&encounters, &beside);
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("run.checkpoint");
         for algorithm in Algorithm::ALL {
             let mut whole = Run::new(small(algorithm), &lessons, 3);
             while whole.advance().is_some() {}
             let mut first = Run::new(small(algorithm), &lessons, 3);
-            (0..17).for_each(|_| assert!(first.advance().is_some()));
+            (0..27).for_each(|_| assert!(first.advance().is_some()));
             let saved = Checkpoint {
                 data: [0; 32],
                 algorithm: algorithm.name().to_owned(),

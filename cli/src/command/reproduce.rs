@@ -8,6 +8,7 @@ use crate::failure::Failure;
 use crate::interrupt;
 use crate::judge::{ModeName, Plan, UntilName};
 use crate::report::{self, Learned, Report};
+use crate::settings;
 use crate::source::Source;
 use cede_controller::{Contract, Policy};
 use cede_sim::data::Split;
@@ -35,6 +36,10 @@ pub(crate) struct Args {
     /// Seeds to train each row from
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..))]
     seeds: u64,
+    /// One setting of a row that differs, as in `--set apg.width=64`; repeatable. See `cede train ROW
+    /// --show-settings` for their names
+    #[arg(long, value_name = "ROW.NAME=VALUE")]
+    set: Vec<String>,
     /// Also train without each file in turn and judge on it: as many trainings more as there are files
     #[arg(long)]
     leave_one_file_out: bool,
@@ -110,7 +115,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         ));
     }
     let elsewhere = args.elsewhere()?;
-    let jobs = args.jobs(&dataset, elsewhere.as_ref());
+    let looks_beside = args.rows.iter().any(|row| row.looks_beside());
+    let every = looks_beside.then(|| dataset.every_pair());
+    let jobs = args.jobs(&dataset, every.as_ref(), elsewhere.as_ref())?;
     let trained = args
         .train(&jobs, &dataset.site.name)
         .inspect_err(|failure| {
@@ -179,7 +186,25 @@ impl Args {
         Ok(self.transfer.as_deref().map(load).transpose()?)
     }
 
-    fn jobs<'d>(&self, dataset: &'d Dataset, elsewhere: Option<&'d Dataset>) -> Vec<Job<'d>> {
+    /// `every` has the pairs that may be looked at beside those that are judged.
+    fn jobs<'d>(
+        &self,
+        dataset: &'d Dataset,
+        every: Option<&'d Dataset>,
+        elsewhere: Option<&'d Dataset>,
+    ) -> Result<Vec<Job<'d>>, Failure> {
+        let with_settings = |row: &Algorithm| Ok((*row, settings::of_row(*row, &self.set)?));
+        let rows: Vec<_> = self
+            .rows
+            .iter()
+            .map(with_settings)
+            .collect::<Result<_, Failure>>()?;
+        let beside = |algorithm: Algorithm, training: &[&Encounter]| {
+            let learned = |file| training.iter().any(|e| e.id.file == file);
+            let every = every.filter(|_| algorithm.looks_beside()).into_iter();
+            let every = every.flat_map(|every| &every.encounters);
+            every.filter(|e| learned(e.id.file)).collect()
+        };
         let mut judged: Vec<(String, Vec<&'d Encounter>)> = Vec::new();
         for split in Self::splits(dataset) {
             judged.push((
@@ -191,13 +216,17 @@ impl Args {
             let all = site.encounters.iter().collect();
             judged.push((format!("{}, all", site.site.name), all));
         }
-        let seeded = (0..self.seeds).flat_map(|seed| self.rows.iter().map(move |row| (*row, seed)));
-        let jobs = seeded.flat_map(|(algorithm, seed)| {
+        let seeded = (0..self.seeds).flat_map(|seed| rows.iter().map(move |row| (row, seed)));
+        let jobs = seeded.flat_map(|((algorithm, settings), seed)| {
+            let algorithm = *algorithm;
+            let training: Vec<_> = dataset.split(Split::Train).collect();
             let whole = Job {
                 algorithm,
+                settings: settings.clone(),
                 seed,
                 without: None,
-                training: dataset.split(Split::Train).collect(),
+                beside: beside(algorithm, &training),
+                training,
                 validation: dataset.split(Split::Validation).collect(),
                 judged: judged.clone(),
             };
@@ -208,15 +237,17 @@ impl Args {
             };
             let folds = folds.into_iter().map(move |fold| Job {
                 algorithm,
+                settings: settings.clone(),
                 seed,
                 without: Some(fold.file),
+                beside: beside(algorithm, &fold.train),
                 training: fold.train,
                 validation: Vec::new(),
                 judged: vec![(Selection::LeaveOneFileOut.name().to_owned(), fold.held_out)],
             });
             std::iter::once(whole).chain(folds)
         });
-        jobs.collect()
+        Ok(jobs.collect())
     }
 
     /// Trains all `jobs`, as many at a time as there are threads.

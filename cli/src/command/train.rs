@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::interrupt;
+use crate::settings::{checked, quoted, with};
 use crate::source::Source;
 use crate::training::{Identity, Training};
 use cede_sim::data::Split;
@@ -29,7 +30,8 @@ pub(crate) struct Args {
     /// Seed of the synthetic encounters; training has its own
     #[arg(long, default_value_t = 1, value_name = "SEED")]
     data_seed: u64,
-    /// Also learn from every two vehicles of the training files whose ways cross or merge
+    /// In a refinement, hold the network to what it was wherever two vehicles of the training files
+    /// cross or merge
     #[arg(long)]
     every_pair: bool,
     /// Properties that the policy is to have, for `apg` to learn beside driving
@@ -107,13 +109,15 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             "add training files to the folder, or name another site",
         ));
     }
-    let more = args.more(&dataset);
-    let encounters = || own.iter().copied().chain(&more);
+    let every = args.every_pair.then(|| dataset.every_pair());
+    let beside = every.iter().flat_map(|every| every.split(Split::Train));
+    let beside: Vec<&Encounter> = beside.collect();
+    let encounters = || own.iter().chain(&beside).copied();
     let (claims, text) = args.claims()?;
     let hash = data_hash(encounters(), &text);
     let lessons = Lessons {
         claims,
-        ..Lessons::new(&own, &more)
+        ..Lessons::new(&own, &beside)
     };
     let identity = Identity {
         data: hash,
@@ -138,18 +142,7 @@ impl Args {
         for set in &self.set {
             settings = with(&settings, &quoted(set), "--set")?;
         }
-        Ok(settings)
-    }
-
-    /// What to learn from beside the encounters themselves.
-    fn more(&self, dataset: &Dataset) -> Vec<Encounter> {
-        if !self.every_pair {
-            return Vec::new();
-        }
-        let mut site = dataset.site.clone();
-        site.every_pair = true;
-        let all = Dataset::new(site, dataset.recordings.clone());
-        all.split(Split::Train).cloned().collect()
+        checked(settings)
     }
 
     /// What is to be claimed of the policy, and the text that says so.
@@ -280,14 +273,6 @@ impl Args {
     }
 }
 
-/// `name=word` as TOML, which wants quotes around a word.
-fn quoted(set: &str) -> String {
-    match set.split_once('=') {
-        Some((name, value)) if set.parse::<toml::Table>().is_err() => format!("{name}=\"{value}\""),
-        _ => set.to_owned(),
-    }
-}
-
 fn read(path: &Path) -> Result<String, Failure> {
     std::fs::read_to_string(path).map_err(|error| {
         let problem = format!("cannot read {}: {error}", path.display());
@@ -316,18 +301,6 @@ fn scalars(point: &Point) -> Vec<(&'static str, f32)> {
 fn unwritable(folder: &Path, error: &std::io::Error) -> Failure {
     let problem = format!("cannot write to {}: {error}", folder.display());
     Failure::input(problem, "free some space or name another folder")
-}
-
-fn with(settings: &Settings, text: &str, origin: &str) -> Result<Settings, Failure> {
-    let wrong = |error: toml::de::Error| {
-        let problem = format!("{origin}: {}", error.to_string().trim_end());
-        Failure::input(
-            problem,
-            "see all settings and their defaults with --show-settings",
-        )
-    };
-    let table: toml::Table = text.parse().map_err(wrong)?;
-    settings.with(&table).map_err(wrong)
 }
 
 fn write(path: &Path, words: &[u32]) -> Result<(), Failure> {

@@ -109,6 +109,15 @@ impl Dataset {
         }
     }
 
+    /// The same recordings, with the encounters of every two vehicles whose ways cross or merge
+    /// ([`Site::every_pair`]).
+    #[must_use]
+    pub fn every_pair(&self) -> Self {
+        let mut site = self.site.clone();
+        site.every_pair = true;
+        Self::new(site, self.recordings.clone())
+    }
+
     /// The encounters of `split`, in order.
     pub fn split(&self, split: Split) -> impl Iterator<Item = &Encounter> {
         let files = &self.site.split;

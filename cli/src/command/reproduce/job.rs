@@ -7,22 +7,20 @@ use crate::training::{Identity, Training};
 use cede_sim::{Encounter, output, weights};
 use cede_train::curve::{Curve, Panel};
 use cede_train::episodes::Course;
-use cede_train::network::Network;
-use cede_train::pilot::Pilot;
 use cede_train::provenance::{Provenance, data_hash};
-use cede_train::run::{Algorithm, Lessons};
+use cede_train::run::{Algorithm, Lessons, Settings};
 use std::path::{Path, PathBuf};
-
-/// From a member's seed to the next one's: more than anyone has seeds.
-const MEMBER: u64 = 1 << 32;
 
 /// One training and what it is judged on.
 pub(super) struct Job<'d> {
     pub(super) algorithm: Algorithm,
+    pub(super) settings: Settings,
     pub(super) seed: u64,
     /// The file that it does not learn from, in leave-one-file-out.
     pub(super) without: Option<u16>,
     pub(super) training: Vec<&'d Encounter>,
+    /// What it may look at beside them: none of them is judged.
+    pub(super) beside: Vec<&'d Encounter>,
     /// What the learning curve is drawn of, beside what it learns from.
     pub(super) validation: Vec<&'d Encounter>,
     /// Encounters by the name of what they are a selection of.
@@ -43,7 +41,7 @@ impl Job<'_> {
             settings: identity.settings.text(),
             seed: self.seed,
             data: format!("recordings of {site}"),
-            encounters: self.training.len(),
+            encounters: self.training.len() + self.beside.len(),
             data_hash: identity.data,
             command: "cede reproduce".to_owned(),
         }
@@ -63,10 +61,10 @@ impl Job<'_> {
     ) -> Result<Trained, Failure> {
         interrupt::check()?;
         let identity = Identity {
-            data: data_hash(self.training.iter().copied(), ""),
+            data: data_hash(self.training.iter().chain(&self.beside).copied(), ""),
             algorithm: self.algorithm,
             seed: self.seed,
-            settings: self.algorithm.reproduction(),
+            settings: self.settings.clone(),
         };
         let provenance = self.provenance(&identity, site);
         let file = folder.join(self.name() + ".cede");
@@ -74,52 +72,29 @@ impl Job<'_> {
             progress(1.0);
             return Ok(trained);
         }
-        let lessons = Lessons::new(&self.training, &[]);
+        let lessons = Lessons::new(&self.training, &self.beside);
         let panel = self.without.is_none().then(|| Panel {
             train: &lessons.courses,
             validation: self.validation.iter().map(|e| Course::new(e)).collect(),
         });
-        let mut members: Vec<Training<'_>> = Vec::new();
-        let count = self.algorithm.members();
-        for member in 0..count {
-            // The first member is what `cede train` makes of this seed.
-            let identity = Identity {
-                seed: self.seed + member * MEMBER,
-                ..identity.clone()
-            };
-            let panel = panel.clone().filter(|_| member == 0);
-            let checkpoint = file.with_extension(format!("{member}.checkpoint"));
-            let mut training = if resume && checkpoint.exists() {
-                Training::resume(identity, &lessons, panel, checkpoint)?
-            } else {
-                Training::new(identity, &lessons, panel, checkpoint)
-            };
-            let mut told = 0.0;
-            training.finish(|report, _, _| {
-                let share = report.done as f64 / (report.total.max(1) * count) as f64;
-                progress(share - told);
-                told = share;
-                Ok(())
-            })?;
-            if count > 1 {
-                // The next member may be interrupted.
-                training.save()?;
-            }
-            members.push(training);
-        }
-        let networks: Vec<_> = members
-            .iter()
-            .map(|m| m.run.pilot().network.clone())
-            .collect();
-        let pilot = Pilot {
-            network: &Network::mean(&networks),
-            ..members[0].run.pilot()
+        let checkpoint = file.with_extension("checkpoint");
+        let mut training = if resume && checkpoint.exists() {
+            Training::resume(identity, &lessons, panel, checkpoint)?
+        } else {
+            Training::new(identity, &lessons, panel, checkpoint)
         };
-        let words = pilot.weights(provenance.hash());
+        let mut told = 0.0;
+        training.finish(|report, _, _| {
+            let share = report.done as f64 / report.total.max(1) as f64;
+            progress(share - told);
+            told = share;
+            Ok(())
+        })?;
+        let words = training.run.pilot().weights(provenance.hash());
         let words = words.map_err(|error| self.diverged(&error))?;
-        let curve = std::mem::take(&mut members[0].curve);
+        let curve = std::mem::take(&mut training.curve);
         write(&file, &words, &curve)?;
-        members.iter().for_each(Training::clean);
+        training.clean();
         let policy = weights::keep(&words).map_err(|error| self.diverged(&error))?;
         Ok(Trained { policy, curve })
     }
