@@ -18,7 +18,8 @@
 
 use crate::adam::{Adam, clip};
 use crate::claims::{self, Claims, Hard};
-use crate::closed_loop::{Aim, ClosedLoop, Cost, Former, Start};
+use crate::closed_loop::{Aim, ClosedLoop, Former, Start};
+use crate::cost::Cost;
 use crate::inputs::Inputs;
 use crate::network::Network;
 use crate::pilot::Pilot;

@@ -12,6 +12,7 @@ pub mod bc;
 pub mod checkpoint;
 pub mod claims;
 pub mod closed_loop;
+pub mod cost;
 pub mod curve;
 pub mod episodes;
 pub mod gaussian;

@@ -2,7 +2,7 @@
 
 use crate::apg::{self, Apg, Refinement};
 use crate::bc::{self, Bc};
-use crate::closed_loop::Cost;
+use crate::cost::Cost;
 use crate::episodes::{Course, Reward};
 use crate::learner::Rates;
 use crate::pilot::Pilot;
