@@ -93,9 +93,9 @@ impl Default for Refinement {
     fn default() -> Self {
         Self {
             updates: 0,
-            rate: 1.4e-3,
+            rate: 1e-3,
             places: 64,
-            hold: 1.5,
+            hold: 2.5,
         }
     }
 }

@@ -90,18 +90,20 @@ impl Algorithm {
             // More updates fit the few recorded encounters better, and those held out worse: that is
             // for the refinement, which is held to what the short trainings agree on.
             Settings::Apg(settings) => Settings::Apg(apg::Settings {
-                members: 2,
+                members: 4,
                 updates: 400,
                 batch: 128,
+                width: 32,
                 carry_on: 0.7,
                 clip: 10.0,
                 cost: Cost {
+                    speed: 1.0,
                     gap: 2.0,
-                    contact: 30.0,
+                    contact: 50.0,
                     ..settings.cost
                 },
                 refinement: Refinement {
-                    updates: 1200,
+                    updates: 1600,
                     ..settings.refinement
                 },
                 ..settings
