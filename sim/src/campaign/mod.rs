@@ -246,9 +246,7 @@ impl<R: Rules> World<R> {
 
     /// One step of everybody.
     fn advance(&mut self) {
-        let contract = &self.scenario.setup.contract;
-        let late = f64::from(contract.latency / STEP);
-        let top = contract.ego.max_speed;
+        let late = f64::from(self.scenario.setup.contract.latency / STEP);
         for i in 0..self.states.len() {
             let shielded = matches!(self.minds[i], Mind::Shielded { .. });
             // Late by a whole period or not at all: the extremes of what the contract allows.
@@ -258,9 +256,6 @@ impl<R: Rules> World<R> {
             } else {
                 self.commands[i]
             };
-            // A shielded vehicle has a limiter, which a plan that is carried out blindly may need.
-            let limited = shielded && self.states[i].v >= top && acceleration > 0.0;
-            let acceleration = if limited { 0.0 } else { acceleration };
             self.states[i] = advance(self.states[i], acceleration);
             self.in_effect[i] = self.commands[i];
         }
