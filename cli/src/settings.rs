@@ -29,10 +29,11 @@ pub(crate) fn with(settings: &Settings, text: &str, origin: &str) -> Result<Sett
 pub(crate) fn of_row(row: Algorithm, sets: &[String]) -> Result<Settings, Failure> {
     let settings = sets.iter().try_fold(row.reproduction(), |settings, set| {
         let (name, rest) = set.split_once('.').unwrap_or((set, ""));
-        if !Algorithm::ALL.iter().any(|known| known.name() == name) {
+        let known = Algorithm::ALL.iter().any(|known| known.name() == name);
+        if rest.is_empty() || !known {
             let mend = "name the row first, as in --set apg.width=64";
             return Err(Failure::input(
-                format!("--set {set}: no row is called `{name}`"),
+                format!("--set {set}: names no setting of a row"),
                 mend,
             ));
         }
