@@ -22,12 +22,13 @@
 
 use crate::features::FeatureSet;
 use crate::mlp::{MAX_WIDTH, Mlp, OUTPUTS};
-use crc::{CRC_32_ISO_HDLC, Crc};
+use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 
 const MAGIC: u32 = u32::from_le_bytes(*b"CEDE");
 const VERSION: u32 = 1;
 const HEADER: usize = 16;
-static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+/// Without a table: a kilobyte of flash is worth more than the milliseconds once, when the weights are parsed.
+static CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
 /// Largest magnitude of a weight or bias. With inputs within ± 8 and widths up to 128
 /// no sum can exceed 10²¹, so nothing overflows.

@@ -18,6 +18,16 @@ pub struct Departure<R> {
     pub least: Reach<R>,
 }
 
+/// The speed (m/s) up to which the ego certainly does what is commanded: its limiter, too, errs by the
+/// speed error at most.
+///
+/// Cost: constant. Never panics.
+pub fn unlimited<R: Real>(contract: &Contract) -> R {
+    let speed = R::of(contract.ego.max_speed) - R::of(contract.speed_error);
+    // A contract whose error exceeds its speed limit says nothing about how fast the ego gets.
+    speed.max(R::of(0.01))
+}
+
 /// Bounds on the ego after `command` (m/s²) for one period, given now at `speed` (m/s, as sensed) while
 /// one between the two `previous` (m/s²) is still in effect for at most the latency.
 ///
@@ -31,17 +41,17 @@ pub fn departure<R: Real>(
     let error = R::of(contract.speed_error);
     let latency = R::of(contract.latency);
     let rest = R::of(contract.period) - latency;
-    let go = R::of(contract.ego.go);
+    let (go, cap) = (R::of(contract.ego.go), unlimited(contract));
     let most = Reach::start(speed + error)
         .at_most(previous_most.max(command), latency)
         .at_most(command, rest);
     let least = Reach::start(speed - error)
-        .at_least(previous_least.min(command), latency)
-        .at_least(command, rest);
+        .at_least(previous_least.min(command), cap, latency)
+        .at_least(command, cap, rest);
     Departure {
         braking: most.at_most(command, latency),
         most: most.at_most(command.max(go), latency),
-        least: least.at_least(command.min(go), latency),
+        least: least.at_least(command.min(go), cap, latency),
     }
 }
 
@@ -50,9 +60,7 @@ pub fn departure<R: Real>(
 ///
 /// Cost: constant. Never panics.
 pub fn clearing<R: Real>(contract: &Contract, least: Reach<R>, target: R) -> (R, R) {
-    let cap = R::of(contract.ego.max_speed) - R::of(contract.speed_error);
-    // A contract whose error exceeds its speed limit says nothing about how fast the ego gets.
-    let (time, speed) = least.until(target, R::of(contract.ego.go), cap.max(R::of(0.01)));
+    let (time, speed) = least.until(target, R::of(contract.ego.go), unlimited(contract));
     (
         time + R::of(contract.period) + R::of(contract.latency),
         speed,

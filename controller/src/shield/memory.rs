@@ -90,7 +90,8 @@ impl<const N: usize> Memory<N> {
             _ => (-contract.ego.braking, contract.ego.acceleration),
         };
         let error = contract.speed_error;
-        let least = Reach::start(last.speed - error).at_least(least, time);
+        let least =
+            Reach::start(last.speed - error).at_least(least, margin::unlimited(contract), time);
         let most = Reach::start(last.speed + error).at_most(most, time);
         moved(contract, last, now, least, most)
     }
@@ -99,7 +100,7 @@ impl<const N: usize> Memory<N> {
 /// Whether an other seen as `last` can be as it is seen `now`, `time` (s) later.
 fn other_can(contract: &Contract, last: &Vehicle, now: &Vehicle, time: f32) -> bool {
     let error = contract.speed_error;
-    let least = Reach::start(last.speed - error).at_least(-contract.other.braking, time);
+    let least = Reach::start(last.speed - error).at_least(-contract.other.braking, 0.0, time);
     let most = margin::rush(contract, last.speed + error, time);
     moved(contract, last, now, least, most)
 }

@@ -40,17 +40,19 @@ impl<R: Real> Reach<R> {
         }
     }
 
-    /// At least as far and as fast as this after `time` more at `acceleration`, of either sign.
+    /// At least as far and as fast as this after `time` more at `acceleration`, of either sign, by a vehicle
+    /// that is perhaps not accelerated beyond the speed `cap`; one that is faster already keeps its speed.
     ///
-    /// Exact, but for a vehicle that comes to rest on the way: that one stops no earlier.
+    /// Exact, but for a vehicle that reaches the cap or comes to rest on the way: that one gets no less far.
     ///
     /// Cost: constant. Never panics.
     #[must_use]
-    pub fn at_least(self, acceleration: R, time: R) -> Self {
-        let step = (self.speed + acceleration * time * R::of(0.5)) * time;
+    pub fn at_least(self, acceleration: R, cap: R, time: R) -> Self {
+        let speed = (self.speed + acceleration * time).min(cap.max(self.speed));
+        let step = (self.speed + speed) * time * R::of(0.5);
         Self {
             distance: self.distance + step.max(R::of(0.0)),
-            speed: (self.speed + acceleration * time).max(R::of(0.0)),
+            speed: speed.max(R::of(0.0)),
         }
     }
 
@@ -111,13 +113,17 @@ mod tests {
 
     proptest! {
         #[test]
-        fn bounds_hold_the_motion(v in 0.0_f32..20.0, a in -8.0_f32..4.0, time in 0.0_f32..2.0) {
+        fn bounds_hold_the_motion(
+            v in 0.0_f32..20.0, a in -8.0_f32..4.0, cap in 0.0_f32..25.0, time in 0.0_f32..2.0,
+        ) {
             let (s, end) = integrate(v.into(), a.into(), 100.0, time.into());
-            let (low, high) = (Reach::start(v).at_least(a, time), Reach::start(v).at_most(a, time));
-            prop_assert!(f64::from(low.distance) <= s + 1e-3 && s - 1e-3 <= f64::from(high.distance));
-            prop_assert!((f64::from(low.speed) - end).abs() < 1e-3);
+            let (limited, slower) = integrate(v.into(), a.into(), cap.into(), time.into());
+            let low = Reach::start(v).at_least(a, cap, time);
+            let high = Reach::start(v).at_most(a, time);
+            prop_assert!(f64::from(low.distance) <= limited + 1e-3 && s - 1e-3 <= f64::from(high.distance));
+            prop_assert!((f64::from(low.speed) - slower).abs() < 1e-3);
             prop_assert!((f64::from(high.speed) - end).abs() < 1e-3);
-            if v + a * time >= 0.0 {
+            if (0.0..=cap).contains(&(v + a * time)) {
                 prop_assert!((low.distance - high.distance).abs() < 1e-4);
             }
         }

@@ -180,6 +180,38 @@ fn a_broken_contract_is_reported_and_the_plan_is_void() {
 }
 
 #[test]
+fn a_speed_limiter_breaks_no_contract() {
+    let mut shield = Shield::new(WORST).unwrap();
+    let scene = crossing();
+    let mut breach = |s, speed| {
+        let decision = shield.filter(&scene, &seen(vehicle(s, speed), vehicle(0.0, 0.0)), 3.0);
+        decision.breach
+    };
+    for (s, speed) in [(0.0, 14.8), (1.489, 14.99), (2.989, 15.0)] {
+        assert_eq!(breach(s, speed), None, "{speed} m/s");
+    }
+    let too_slow = breach(4.484, 14.9);
+    assert_eq!(too_slow, Some(crate::decision::Breach::Ego));
+}
+
+#[test]
+fn what_the_ego_gets_through_at_least_knows_of_its_speed_limiter() {
+    let least = |max_speed| {
+        let mut contract = WORST;
+        contract.ego.max_speed = max_speed;
+        let departure = margin::departure(&contract, 14.9, [3.0; 2], 3.0);
+        (departure.least.speed, departure.most.speed)
+    };
+    let (limited, fastest) = least(15.0);
+    assert_eq!(limited, 15.0);
+    assert!(fastest > 15.4, "whether it is limited is not relied on");
+    assert!(
+        least(100.0).0 > 15.4,
+        "the limit is what makes the difference"
+    );
+}
+
+#[test]
 fn an_ego_that_stands_in_a_zone_gets_out_of_it() {
     let mut shield = Shield::new(WORST).unwrap();
     let (inside, scene) = (vehicle(60.0, 0.0), crossing());

@@ -256,6 +256,11 @@ impl<R: Rules> World<R> {
             } else {
                 self.commands[i]
             };
+            let acceleration = if shielded {
+                acceleration.min((self.scenario.limit - self.states[i].v).max(0.0) / STEP)
+            } else {
+                acceleration
+            };
             self.states[i] = advance(self.states[i], acceleration);
             self.in_effect[i] = self.commands[i];
         }

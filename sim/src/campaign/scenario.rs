@@ -54,7 +54,7 @@ impl Setup {
 
     /// The set-ups of a campaign, each with its name.
     #[must_use]
-    pub fn all() -> [(&'static str, Self); 13] {
+    pub fn all() -> [(&'static str, Self); 14] {
         let among = |vehicles| Self {
             vehicles,
             ..Self::ADVERSARIES
@@ -84,11 +84,14 @@ impl Setup {
             patience: 5,
             ..Precedence::ALL_WAY_STOP
         });
+        let mut slow = among(3);
+        slow.contract.ego.max_speed = 1.5;
         [
             ("one adversary", among(2)),
             ("three adversaries", among(4)),
             ("eight adversaries", among(9)),
             ("merging", merging(among(3))),
+            ("slow among fast", slow),
             ("sensing errors", noisy(among(3))),
             ("blackouts", noisy(blind(0.02, among(3)))),
             ("often blind", blind(0.06, among(7))),
@@ -115,6 +118,8 @@ pub(super) struct Entrant {
 #[derive(Clone, Debug)]
 pub struct Scenario {
     pub(super) setup: Setup,
+    /// The speed (m/s) beyond which shielded vehicles do not accelerate, whatever is commanded.
+    pub(super) limit: f32,
     pub(super) vehicles: Vec<Entrant>,
 }
 
@@ -161,7 +166,22 @@ impl Scenario {
                 })
             })
             .collect::<Option<_>>()?;
-        Some(Self { setup, vehicles })
+        Some(Self {
+            setup,
+            limit: limit(setup, rng),
+            vehicles,
+        })
+    }
+}
+
+/// A shielded vehicle's limiter errs as its sensors do. One that no shielded vehicle has to fear may do without:
+/// the guarantee holds either way.
+fn limit(setup: Setup, rng: &mut Pcg64) -> f32 {
+    let contract = setup.contract;
+    if setup.everyone || rng.random_bool(0.5) {
+        contract.ego.max_speed + contract.speed_error * rng.random_range(-1.0..=1.0_f32)
+    } else {
+        f32::INFINITY
     }
 }
 

@@ -155,6 +155,9 @@ impl<'a> Loop<'a> {
             }
             speed = speed.and(after.clamp(0.0, f64::INFINITY));
         }
+        // Perhaps it is not accelerated beyond its limit.
+        let limit = Interval::of(self.shield.contract.ego.max_speed);
+        speed = speed.hull(Real::min(speed, Real::max(limit, before.speed)));
         let speed = speed.wider(ROUNDING).clamp(0.0, f64::INFINITY);
         let travel = before.speed.add(speed).mul(period).scale(0.5);
         // One that comes to rest within the step travels no farther than that, and no less than nothing.
