@@ -1,7 +1,6 @@
 //! The shield in closed loop: it keeps vehicles apart, it lets them pass, and each of its rules is needed.
 //! rapier2d judges every step, those of the broken shields as well.
 
-use cede_controller::shield::hazard::Hazard;
 use cede_controller::shield::margin::{self, Departure};
 use cede_controller::shield::reach::Reach;
 use cede_controller::shield::{Rules, Sound};
@@ -134,8 +133,8 @@ mutant! { a_stop_without_the_first_period_is_caught, StopsNow,
     }
 }
 mutant! { hazards_in_the_wrong_order_are_caught, WrongOrder,
-    fn sooner(a: &Hazard, b: &Hazard) -> bool {
-        a.target > b.target
+    fn sooner(a: f32, b: f32) -> bool {
+        a > b
     }
 }
 mutant! { entering_a_lane_without_a_gap_is_caught, NoGap,
@@ -151,12 +150,6 @@ mutant! { a_leader_that_is_trusted_to_brake_gently_is_caught, GentleLeader,
 mutant! { a_plan_that_forgets_to_stop_after_the_zone_is_caught, RestsWhereItClears,
     fn rest(_: &Contract, from: Reach<f32>, _: f32) -> f32 {
         from.distance
-    }
-}
-
-mutant! { a_turn_that_begins_when_the_other_ends_is_caught, NoGrace,
-    fn grace(_: &Contract) -> u16 {
-        0
     }
 }
 

@@ -1,7 +1,5 @@
 //! What the shield assumes of the world, in numbers.
 
-use super::waiting;
-
 /// The assumptions under which the shield's guarantee holds.
 ///
 /// Guarantee: the ego is never in a conflict zone together with another vehicle, and never
@@ -32,11 +30,12 @@ pub struct Contract {
 /// What the ego can do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ego {
-    /// It is not accelerated at or above this speed, in m/s, in (0, 100].
+    /// No acceleration is commanded at or above this speed, in m/s, in (0, 100]; a limiter may keep the vehicle from
+    /// going faster, and errs by `speed_error` at most. The guarantee holds with a limiter and without one.
     pub max_speed: f32,
     /// Largest acceleration that is commanded, in m/s², in (0, 20].
     pub acceleration: f32,
-    /// Acceleration that it achieves when it must clear a zone, in m/s², in (0, `acceleration`].
+    /// Acceleration that it achieves, below its limiter's speed, when it must clear a zone, in m/s², in (0, `acceleration`].
     pub go: f32,
     /// Braking that it achieves, and the hardest that is commanded, in m/s², in (0, 20].
     pub braking: f32,
@@ -158,9 +157,16 @@ impl Contract {
         ..Self::WORST_CASE
     };
 
-    /// Whether a vehicle whose turn is past stops where the other expects it, and is seen if it does not.
+    /// The speed (m/s) up to which a vehicle counts as one at rest: a quarter of what `go` gives in a period.
+    pub(super) fn rest_speed(&self) -> f32 {
+        0.25 * self.ego.go * self.period
+    }
+
+    /// Whether a vehicle whose turn is past stops where the other expects it, and is seen if it does not: one that
+    /// goes gets faster, in spite of its limiter, than one that may be taken for one at rest.
     fn takes_turns(&self, rule: Precedence) -> bool {
-        self.ego.braking >= rule.braking && waiting::tells_going_from_rest(self)
+        let rest = self.rest_speed() + 2.0 * self.speed_error;
+        self.ego.braking >= rule.braking && rest < self.ego.max_speed - self.speed_error
     }
 
     /// The contract, if every number is in its range.

@@ -1,8 +1,8 @@
 //! The conflict zones ahead, as distances from where the ego is now.
 
 use super::contract::Contract;
-use super::plan::lesser;
 use super::precedence::Claims;
+use super::real::Real;
 use super::rules::Rules;
 use crate::observation::{Observation, Vehicle};
 use crate::scene::{MAX_OTHERS, Scene};
@@ -99,7 +99,7 @@ impl Hazards {
     pub(crate) fn nearest_limit(&self) -> f32 {
         self.sorted
             .first()
-            .map_or(FAR, |first| lesser(first.limit, first.limit_beyond))
+            .map_or(FAR, |first| Real::min(first.limit, first.limit_beyond))
     }
 
     fn insert<R: Rules>(&mut self, hazard: Hazard) {
@@ -107,7 +107,7 @@ impl Hazards {
         let _ = self.sorted.push(hazard);
         for i in (1..self.sorted.len()).rev() {
             if let Some([before, after]) = self.sorted.get_mut(i - 1..=i)
-                && R::sooner(after, before)
+                && R::sooner(after.target, before.target)
             {
                 core::mem::swap(before, after);
             }
@@ -118,7 +118,7 @@ impl Hazards {
         let mut least = FAR;
         for hazard in self.sorted.iter_mut().rev() {
             hazard.limit_beyond = least;
-            least = lesser(least, hazard.limit);
+            least = Real::min(least, hazard.limit);
         }
     }
 }

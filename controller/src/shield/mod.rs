@@ -16,6 +16,7 @@ pub mod real;
 pub mod rules;
 #[cfg(test)]
 mod tests;
+mod verified;
 mod waiting;
 
 pub use contract::{Contract, ContractError};
@@ -29,8 +30,8 @@ use crate::scene::Scene;
 use core::marker::PhantomData;
 use hazard::{Hazards, Passage};
 use memory::Memory;
-use plan::{Verified, best, passage_margin};
 use precedence::{Claims, Precedences};
+use verified::{Verified, best, passage_margin};
 
 /// Accelerations of the grid, from full braking to full acceleration.
 const GRID: u8 = 13;

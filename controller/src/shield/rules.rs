@@ -1,7 +1,6 @@
 //! The elementary rules of which the shield is composed.
 
 use super::contract::Contract;
-use super::hazard::Hazard;
 use super::margin::{self, Departure};
 use super::plan::Plan;
 use super::reach::Reach;
@@ -65,10 +64,10 @@ pub trait Rules {
         other >= zone.other.to
     }
 
-    /// Whether hazard `a` is cleared before hazard `b`.
+    /// Whether a hazard whose target is `a` metres ahead is cleared before one whose target is `b` metres ahead.
     #[must_use]
-    fn sooner(a: &Hazard, b: &Hazard) -> bool {
-        a.target < b.target
+    fn sooner(a: f32, b: f32) -> bool {
+        a < b
     }
 
     /// Whether nobody's turn is left from before, when both have rested for so many periods: a new one

@@ -15,12 +15,12 @@ pub(super) enum Rest {
 }
 
 impl Rest {
-    /// What `vehicle` does; to be at rest is to have a quarter of the speed that `go` gives in a period, or less.
+    /// What `vehicle` does; to be at rest is to have [`Contract::rest_speed`] or less.
     ///
     /// One surely at rest here is faster than that by twice the error at most, and any other
     /// sensor shows one error more: for that one it is perhaps at rest.
     pub(super) fn of(contract: &Contract, vehicle: &Vehicle) -> Self {
-        let (slow, error) = (slow(contract), contract.speed_error);
+        let (slow, error) = (contract.rest_speed(), contract.speed_error);
         if vehicle.speed <= slow + error {
             Self::Surely
         } else if vehicle.speed <= slow + 3.0 * error {
@@ -31,22 +31,12 @@ impl Rest {
     }
 }
 
-/// The speed (m/s) up to which a vehicle counts as one at rest.
-fn slow(contract: &Contract) -> f32 {
-    0.25 * contract.ego.go * contract.period
-}
-
-/// Whether a vehicle that goes is in the end faster than one that may be taken for one at rest.
-pub(super) fn tells_going_from_rest(contract: &Contract) -> bool {
-    slow(contract) + 2.0 * contract.speed_error < contract.ego.max_speed
-}
-
 /// Periods from the end of one vehicle's turn to the beginning of the other's. One seen at rest until then
 /// has no plan left that counts on its turn and goes: it would be seen to move.
 pub(super) fn grace(contract: &Contract) -> u16 {
     let gain = contract.ego.go * contract.period;
     // Truncates towards zero and saturates.
-    let hidden = ((slow(contract) + 2.0 * contract.speed_error) / gain) as u16;
+    let hidden = ((contract.rest_speed() + 2.0 * contract.speed_error) / gain) as u16;
     hidden.saturating_add(4)
 }
 

@@ -1,0 +1,89 @@
+//! The search for a plan that keeps the guarantee.
+
+use super::contract::Contract;
+use super::hazard::{Hazard, Hazards, Passage};
+use super::margin::{self, Departure};
+use super::plan::Plan;
+use super::real::Real;
+use super::rules::Rules;
+use crate::zone::FAR;
+
+/// Clearing that takes longer than this (s) is not planned.
+const HORIZON: f32 = 60.0;
+
+/// A plan that keeps the guarantee, and by how much.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Verified {
+    pub(crate) plan: Plan,
+    /// The least of the plan's margins in m, not negative if the plan is verified.
+    pub(crate) margin: f32,
+}
+
+/// The best plan after one period at a given acceleration: stop before every hazard, or go until the
+/// first k are cleared and stop before all others, for every k.
+///
+/// Cost: one clearing time for each hazard. Never panics.
+pub(crate) fn best<R: Rules>(
+    contract: &Contract,
+    hazards: &Hazards,
+    departure: &Departure<f32>,
+) -> Verified {
+    let rest = departure.braking.rest(contract.ego.braking);
+    let mut best = Verified {
+        plan: Plan { go: 0 },
+        margin: R::stops_short(contract, hazards.nearest_limit(), rest),
+    };
+    let mut passed = FAR;
+    for hazard in hazards.iter() {
+        let (clears, speed) = margin::clearing(contract, departure.least, hazard.target);
+        passed = Real::min(passed, passage_margin::<R>(contract, hazard, clears, speed));
+        // Whatever comes after it cannot mend a hazard that is not passed in time.
+        if passed <= best.margin || clears > HORIZON {
+            break;
+        }
+        let plan = Plan {
+            go: periods(contract, clears),
+        };
+        let time = f32::from(plan.go) * contract.period;
+        let rest = R::rest(contract, departure.most, time);
+        let margin = Real::min(passed, R::stops_short(contract, hazard.limit_beyond, rest));
+        if margin > best.margin {
+            best = Verified { plan, margin };
+        }
+    }
+    best
+}
+
+/// Metres to spare when the ego has cleared `hazard` at `clears` (s from now) with `ego_speed`.
+pub(crate) fn passage_margin<R: Rules>(
+    contract: &Contract,
+    hazard: &Hazard,
+    clears: f32,
+    ego_speed: f32,
+) -> f32 {
+    let rush = |speed| R::rush(contract, speed, clears);
+    match hazard.passage {
+        Passage::Before { distance, speed } => {
+            margin::clears_before(contract, distance, rush(speed))
+        }
+        Passage::Ahead { gap, speed } => {
+            let rush = rush(speed);
+            let needed = R::safe_gap(contract, rush.speed, ego_speed);
+            margin::enters_ahead(contract, gap, rush, needed)
+        }
+        Passage::Never => -FAR,
+    }
+}
+
+/// The least number of going periods after the first one with which the ego has gone for long enough
+/// at `clears` (s from now) even if the last command takes effect at once and the first one late.
+fn periods(contract: &Contract, clears: f32) -> u16 {
+    let count = (clears - contract.period) / contract.period;
+    // Truncates towards zero and saturates; bounded by the horizon in any case.
+    let whole = count as u16;
+    if f32::from(whole) < count {
+        whole.saturating_add(1)
+    } else {
+        whole
+    }
+}
