@@ -1,5 +1,7 @@
 //! The network: four dense layers with ReLU between, in `f32`, in one fixed order of summation.
 
+use core::ops::Range;
+
 /// Widths are multiples of this: so many neurons are summed side by side, with one accumulator each.
 pub const LANES: usize = 16;
 /// Widest hidden layer.
@@ -7,10 +9,13 @@ pub const MAX_WIDTH: usize = 128;
 /// Outputs: mean of the two commands, then the logarithms of their spreads (training's; unused at inference).
 pub const OUTPUTS: usize = 4;
 
-/// Neurons summed side by side, as many as the target's registers hold. It changes no result,
+/// Neurons of a layer whose weights lie together: what follows in memory is what is needed next, so
+/// a network that does not fit the first-level cache is read in one ascending stream.
+const TILE: usize = 96;
+/// Neurons summed side by side, as many of a tile as the target's registers hold. It changes no result,
 /// because a neuron's sum always runs over its inputs in the same order.
-const TILE: usize = if cfg!(target_feature = "avx") {
-    4 * LANES
+const ABREAST: usize = if cfg!(target_feature = "avx") {
+    TILE
 } else if cfg!(target_feature = "sse2") {
     2 * LANES
 } else {
@@ -30,15 +35,17 @@ pub struct Mlp<'a> {
     output: Dense<'a>,
 }
 
-/// A dense layer: a bias for each neuron, and for each input a column of weights, one for each neuron.
+/// A dense layer. Its words: for every 96 neurons, and then for those that are left, a row of biases and for
+/// each input a row of weights.
 #[derive(Clone, Copy, Debug)]
 pub struct Dense<'a> {
-    biases: &'a [u32],
-    columns: &'a [u32],
+    words: &'a [u32],
+    inputs: usize,
+    neurons: usize,
 }
 
 impl<'a> Mlp<'a> {
-    /// Number of words that a network of this shape takes: layer by layer the biases, then the columns.
+    /// Number of words that a network of this shape takes.
     ///
     /// Cost: constant. Overflows, as `usize` does, for sizes beyond [`MAX_WIDTH`] by far.
     #[must_use]
@@ -68,12 +75,30 @@ impl<'a> Mlp<'a> {
         })
     }
 
+    /// Where each of a network's parameters lies among its words: layer by layer the biases, then
+    /// the weights, input by input.
+    pub(crate) fn places(inputs: usize, width: usize) -> impl Iterator<Item = usize> {
+        let mut start = 0;
+        let layers = [
+            (inputs, width),
+            (width, width),
+            (width, width),
+            (width, OUTPUTS),
+        ];
+        layers.into_iter().flat_map(move |(inputs, neurons)| {
+            let layer = start;
+            let words = (inputs + 1) * neurons;
+            start += words;
+            (0..words).map(move |number| layer + place(inputs, neurons, number))
+        })
+    }
+
     /// Width of the hidden layers.
     ///
     /// Cost: constant. Never panics.
     #[must_use]
-    pub fn width(&self) -> usize {
-        self.output.columns.len() / OUTPUTS
+    pub const fn width(&self) -> usize {
+        self.output.inputs
     }
 
     /// The four layers, from the inputs to the outputs; ReLU follows all but the last.
@@ -104,9 +129,9 @@ impl<'a> Mlp<'a> {
     fn pass<const W: usize>(&self, inputs: &[f32]) -> [f32; OUTPUTS] {
         let (mut a, mut b) = ([0.0; W], [0.0; W]);
         let [first, second, third] = &self.hidden;
-        first.relu(inputs, &mut a);
-        second.relu(&a, &mut b);
-        third.relu(&b, &mut a);
+        first.relu::<ABREAST>(inputs, &mut a);
+        second.relu::<ABREAST>(&a, &mut b);
+        third.relu::<ABREAST>(&b, &mut a);
         self.output.sum(&a)
     }
 }
@@ -116,68 +141,106 @@ impl<'a> Dense<'a> {
     ///
     /// Cost: O(neurons) to go through. Never panics.
     pub fn biases(&self) -> impl ExactSizeIterator<Item = f32> + use<'a> {
-        self.biases.iter().map(|&word| f32::from_bits(word))
+        self.parameters(0..self.neurons)
     }
 
     /// The weights, input by input: those of input 0 for each neuron, then those of input 1, …
     ///
     /// Cost: O(weights) to go through. Never panics.
     pub fn weights(&self) -> impl ExactSizeIterator<Item = f32> + use<'a> {
-        self.columns.iter().map(|&word| f32::from_bits(word))
+        self.parameters(self.neurons..self.words.len())
+    }
+
+    /// The parameters with these numbers: the biases are the first, the weights of input 0 the next, …
+    fn parameters(&self, numbers: Range<usize>) -> impl ExactSizeIterator<Item = f32> + use<'a> {
+        let layer = *self;
+        let place = move |number| place(layer.inputs, layer.neurons, number);
+        numbers.map(move |number| f32::from_bits(layer.words[place(number)]))
     }
 
     /// Takes a layer from the front of `words`.
     fn split(words: &'a [u32], inputs: usize, neurons: usize) -> Option<(Self, &'a [u32])> {
-        let (biases, rest) = words.split_at_checked(neurons)?;
-        let (columns, rest) = rest.split_at_checked(inputs * neurons)?;
-        Some((Self { biases, columns }, rest))
+        let (words, rest) = words.split_at_checked((inputs + 1) * neurons)?;
+        let layer = Self {
+            words,
+            inputs,
+            neurons,
+        };
+        Some((layer, rest))
     }
 
-    /// The first places of `y` become max(0, bias + W·x).
-    fn relu(&self, x: &[f32], y: &mut [f32]) {
-        let Some(y) = y.get_mut(..self.biases.len()) else {
+    /// The first places of `y` become max(0, bias + W·x); `A` neurons are summed side by side.
+    fn relu<const A: usize>(&self, x: &[f32], y: &mut [f32]) {
+        let Some(y) = y.get_mut(..self.neurons) else {
             return;
         };
-        let (wide, rest) = y.as_chunks_mut::<TILE>();
-        let mut start = 0;
-        for y in wide {
-            *y = self.tile(start, x);
-            start += TILE;
-        }
-        if TILE > LANES {
-            for y in rest.as_chunks_mut::<LANES>().0 {
-                *y = self.tile(start, x);
-                start += LANES;
-            }
+        let mut words = self.words;
+        for y in y.chunks_mut(TILE) {
+            let Some((tile, rest)) = Self::split(words, self.inputs, y.len()) else {
+                return;
+            };
+            tile.relu_of_tile::<A>(x, y);
+            words = rest;
         }
     }
 
-    /// `T` neurons from `start` on.
-    #[inline]
-    fn tile<const T: usize>(&self, start: usize, x: &[f32]) -> [f32; T] {
-        let Some(biases) = chunk::<T>(self.biases, start) else {
-            return [0.0; T];
+    /// The same for a layer that is one tile.
+    fn relu_of_tile<const A: usize>(&self, x: &[f32], y: &mut [f32]) {
+        if A == TILE {
+            // All of its neurons side by side: the length of a row is then a constant, too.
+            return match self.neurons {
+                96 => self.abreast::<96>(96, 0, x, y),
+                80 => self.abreast::<80>(80, 0, x, y),
+                64 => self.abreast::<64>(64, 0, x, y),
+                48 => {
+                    // In two, because LLVM leaves 48 sums in memory.
+                    self.abreast::<32>(48, 0, x, y);
+                    self.abreast::<LANES>(48, 32, x, y);
+                }
+                32 => self.abreast::<32>(32, 0, x, y),
+                _ => self.abreast::<LANES>(LANES, 0, x, y),
+            };
+        }
+        let mut start = 0;
+        while start + A <= self.neurons {
+            self.abreast::<A>(self.neurons, start, x, y);
+            start += A;
+        }
+        while A > LANES && start < self.neurons {
+            self.abreast::<LANES>(self.neurons, start, x, y);
+            start += LANES;
+        }
+    }
+
+    /// The same for the `N` neurons from `start` on, of `neurons` in a row.
+    #[inline(always)]
+    fn abreast<const N: usize>(&self, neurons: usize, start: usize, x: &[f32], y: &mut [f32]) {
+        let mut rows = self.words.chunks_exact(neurons);
+        let biases = rows.next().and_then(|row| chunk::<N>(row, start));
+        let y = y.get_mut(start..).and_then(<[f32]>::first_chunk_mut);
+        let (Some(biases), Some(y)) = (biases, y) else {
+            return;
         };
         let mut sums = biases.map(f32::from_bits);
-        for (column, &x) in self.columns.chunks_exact(self.biases.len()).zip(x) {
-            let Some(weights) = chunk::<T>(column, start) else {
+        for (row, &x) in rows.zip(x) {
+            let Some(weights) = chunk::<N>(row, start) else {
                 break;
             };
             for (sum, &weight) in sums.iter_mut().zip(weights) {
                 *sum += f32::from_bits(weight) * x;
             }
         }
-        sums.map(|sum| if sum > 0.0 { sum } else { 0.0 })
+        *y = sums.map(|sum| if sum > 0.0 { sum } else { 0.0 });
     }
 
     /// bias + W·x for the few outputs: four partial sums each, so that the additions need not wait for each other.
     fn sum(&self, x: &[f32]) -> [f32; OUTPUTS] {
         let mut sums = [[0.0; OUTPUTS]; 4];
-        if let Some(biases) = self.biases.first_chunk::<OUTPUTS>() {
-            sums[0] = biases.map(f32::from_bits);
-        }
-        let columns = self.columns.as_chunks::<OUTPUTS>().0.as_chunks::<4>().0;
-        for (columns, x) in columns.iter().zip(x.as_chunks::<4>().0) {
+        let Some((biases, columns)) = self.words.as_chunks::<OUTPUTS>().0.split_first() else {
+            return sums[0];
+        };
+        sums[0] = biases.map(f32::from_bits);
+        for (columns, x) in columns.as_chunks::<4>().0.iter().zip(x.as_chunks::<4>().0) {
             for ((sums, column), x) in sums.iter_mut().zip(columns).zip(x) {
                 for (sum, &weight) in sums.iter_mut().zip(column) {
                     *sum += f32::from_bits(weight) * x;
@@ -189,8 +252,16 @@ impl<'a> Dense<'a> {
     }
 }
 
-fn chunk<const T: usize>(words: &[u32], start: usize) -> Option<&[u32; T]> {
-    words.get(start..)?.first_chunk()
+fn chunk<const N: usize>(row: &[u32], start: usize) -> Option<&[u32; N]> {
+    row.get(start..)?.first_chunk()
+}
+
+/// Where the parameter with this number lies among a layer's words.
+fn place(inputs: usize, neurons: usize, number: usize) -> usize {
+    let (row, neuron) = (number / neurons, number % neurons);
+    let in_tile = neuron % TILE;
+    let start = neuron - in_tile;
+    (inputs + 1) * start + row * TILE.min(neurons - start) + in_tile
 }
 
 #[cfg(test)]
@@ -231,24 +302,73 @@ mod tests {
         })
     }
 
+    /// A network's parameters in the documented order, and its words.
+    fn network(inputs: usize, width: usize) -> (Vec<u32>, Vec<u32>) {
+        let count = Mlp::words(inputs, width);
+        let parameters: Vec<u32> = noise(3).map(f32::to_bits).take(count).collect();
+        let mut words = std::vec![0; count];
+        for (place, &parameter) in Mlp::places(inputs, width).zip(&parameters) {
+            words[place] = parameter;
+        }
+        (parameters, words)
+    }
+
+    fn bits(words: &[u32], x: &[f32], width: usize) -> [u32; OUTPUTS] {
+        let mlp = Mlp::new(words, x.len(), width).unwrap();
+        mlp.forward(x).map(f32::to_bits)
+    }
+
     #[test]
     fn every_width_gives_the_bits_of_the_documented_order() {
         for inputs in [1, 8, 14, 18] {
             for width in (LANES..=MAX_WIDTH).step_by(LANES) {
-                let count = Mlp::words(inputs, width);
-                let words: Vec<u32> = noise(3).map(f32::to_bits).take(count).collect();
-                let mlp = Mlp::new(&words, inputs, width).unwrap();
+                let (parameters, words) = network(inputs, width);
                 let x: Vec<f32> = noise(5).take(inputs).collect();
-                let (out, expected) = (mlp.forward(&x), reference(&words, &x, width));
-                assert!(out.iter().any(|&o| o != 0.0));
-                assert_eq!(out.map(f32::to_bits), expected.map(f32::to_bits));
+                let expected = reference(&parameters, &x, width);
+                assert!(expected.iter().any(|&o| o != 0.0));
+                assert_eq!(bits(&words, &x, width), expected.map(f32::to_bits));
             }
         }
     }
 
     #[test]
+    fn every_target_gives_the_same_bits() {
+        for width in (LANES..=MAX_WIDTH).step_by(LANES) {
+            let (_, words) = network(8, width);
+            let x: Vec<f32> = noise(5).take(width).collect();
+            for layer in Mlp::new(&words, 8, width).unwrap().hidden {
+                let [mut cortex, mut sse, mut avx] = [[0.0; MAX_WIDTH]; 3];
+                layer.relu::<LANES>(&x, &mut cortex);
+                layer.relu::<{ 2 * LANES }>(&x, &mut sse);
+                layer.relu::<TILE>(&x, &mut avx);
+                assert!(cortex[width - LANES..width].iter().any(|&y| y > 0.0));
+                assert_eq!(cortex.map(f32::to_bits), sse.map(f32::to_bits));
+                assert_eq!(cortex.map(f32::to_bits), avx.map(f32::to_bits));
+            }
+        }
+    }
+
+    #[test]
+    fn a_wide_layer_lies_in_tiles_and_others_row_by_row() {
+        for width in (LANES..=MAX_WIDTH).step_by(LANES) {
+            let (parameters, words) = network(2, width);
+            assert_eq!(parameters == words, width <= TILE);
+            let x = [0.4, -0.9];
+            let in_place = bits(&words, &x, width) == bits(&parameters, &x, width);
+            assert_eq!(in_place, width <= TILE);
+        }
+        // Bias and two weights of the first 96, then of the other 32.
+        let places: Vec<usize> = Mlp::places(2, 128).take(4 * 128).collect();
+        assert_eq!(places[..96], (0..96).collect::<Vec<_>>());
+        assert_eq!(places[96..128], (288..320).collect::<Vec<_>>());
+        assert_eq!(places[128..224], (96..192).collect::<Vec<_>>());
+        assert_eq!(places[224..256], (320..352).collect::<Vec<_>>());
+        assert_eq!(places[3 * 128], 3 * 128);
+    }
+
+    #[test]
     fn another_order_gives_other_bits() {
-        let words: Vec<u32> = noise(3).map(f32::to_bits).take(Mlp::words(8, 64)).collect();
+        let (words, _) = network(8, 64);
         let x: Vec<f32> = noise(5).take(8).collect();
         let mut w = words.iter().map(|&w| f32::from_bits(w));
         let mut hidden = x.clone();

@@ -5,15 +5,18 @@
 //! | words | what |
 //! |---|---|
 //! | 1 | the letters `CEDE` |
-//! | 1 | version of the format, 1 |
+//! | 1 | version of the format, 2 |
 //! | 1 | [`FeatureSet`]: 0 raw, 1 route, 2 traffic, 3 scene |
 //! | 1 | [`Perspective`]: 0 joint, 1 ego |
 //! | 3 | sizes: inputs I, width H of the hidden layers, outputs, 4 |
 //! | 8 | provenance: a SHA-256 of what the network was made from |
 //! | 1 | reserved, 0 |
-//! | … | the four layers, each its biases, then for each input a column of weights, `f32` ([`Mlp`]) |
+//! | … | the four layers, `f32`: for each tile of 96 neurons, and for what is left, a row of biases, then for each input a row of weights |
 //! | I, I | centre and scale of each feature, `f32`: the network sees (feature − centre) · scale, within ± [`LIMIT`](crate::features::LIMIT) |
 //! | 1 | CRC-32 (ISO-HDLC) of all the bytes before |
+//!
+//! What lies next to each other is wanted one after the other ([`Mlp`]): a wide layer is read once, from its first
+//! word to its last. Version 1 knew no tiles; its files are refused.
 //!
 //! It is kept as words, not as bytes, because they are aligned: a processor loads a weight straight
 //! from flash as a float. [`include_weights!`](crate::include_weights) puts a file there, on a
@@ -25,7 +28,7 @@ use crate::mlp::{MAX_WIDTH, Mlp, OUTPUTS};
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 
 const MAGIC: u32 = u32::from_le_bytes(*b"CEDE");
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 const HEADER: usize = 16;
 /// Without a table: a kilobyte of flash is worth more than the milliseconds once, when the weights are parsed.
 static CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
@@ -82,7 +85,7 @@ impl core::fmt::Display for WeightsError {
             Self::Magic => "not a weights file: it does not begin with CEDE",
             Self::Checksum => "the checksum does not fit: the file is damaged",
             Self::Unknown => {
-                "a version, feature set or perspective that this program does not know"
+                "a version, feature set or perspective that this program does not know; if the file is older, train or import it again"
             }
             Self::Shape => "the layers' sizes do not fit the file's length or the limits",
             Self::OutOfRange => "a weight is not finite or too large",
@@ -169,7 +172,7 @@ pub struct Draft<'a> {
     pub centres: &'a [f32],
     /// Scale of each feature.
     pub scales: &'a [f32],
-    /// Layer by layer the biases, then for each input a column of weights.
+    /// Layer by layer the biases, then the weights of input 0 for each neuron, then those of input 1, …
     pub parameters: &'a [f32],
 }
 
@@ -208,13 +211,14 @@ impl Draft<'_> {
             size(self.width),
             size(OUTPUTS),
         ];
-        let content = head
-            .into_iter()
-            .chain(words(&self.provenance))
-            .chain([0])
-            .chain(floats.into_iter().flatten().map(|f| f.to_bits()));
-        for (place, word) in out.iter_mut().zip(content) {
+        let header = head.into_iter().chain(words(&self.provenance)).chain([0]);
+        for (place, word) in out.iter_mut().zip(header) {
             *place = word;
+        }
+        let inputs = self.features.count();
+        let places = Mlp::places(inputs, self.width).chain(Mlp::words(inputs, self.width)..);
+        for (place, value) in places.zip(floats.into_iter().flatten()) {
+            out[HEADER + place] = value.to_bits();
         }
         if let Some((last, content)) = out.split_last_mut() {
             *last = crc32(content);
@@ -328,8 +332,8 @@ fn in_range(words: &[u32], limit: f32) -> bool {
 
 fn crc32(words: &[u32]) -> u32 {
     let mut digest = CRC.digest();
-    for word in words {
-        digest.update(&word.to_le_bytes());
+    for byte in words.iter().flat_map(|word| word.to_le_bytes()) {
+        digest.update(&[byte]);
     }
     digest.finalize()
 }
@@ -386,7 +390,7 @@ pub(crate) mod testing {
 #[cfg(test)]
 mod tests {
     extern crate std;
-    use super::testing::file;
+    use super::testing::{file, noise};
     use super::*;
     use std::vec::Vec;
 
@@ -403,6 +407,17 @@ mod tests {
                 assert!(weights.normalisation().all(|n| n == (1.0, 0.1)));
                 assert_eq!(weights.normalisation().count(), features.count());
             }
+        }
+    }
+
+    #[test]
+    fn every_parameter_is_read_back_in_order() {
+        for width in (16..=MAX_WIDTH).step_by(16) {
+            let file = file(FeatureSet::Raw, Perspective::Ego, width);
+            let layers = Weights::parse(&file).unwrap().network.layers();
+            let read = layers.iter().flat_map(|l| l.biases().chain(l.weights()));
+            let written = noise(7).map(|w| 0.4 * w).take(Mlp::words(8, width));
+            assert!(read.eq(written), "{width} wide");
         }
     }
 
@@ -439,7 +454,8 @@ mod tests {
     #[test]
     fn each_field_is_checked() {
         assert_eq!(forged(0, 1), WeightsError::Magic);
-        assert_eq!(forged(1, 2), WeightsError::Unknown);
+        assert_eq!(forged(1, 1), WeightsError::Unknown);
+        assert_eq!(forged(1, 3), WeightsError::Unknown);
         assert_eq!(forged(2, 4), WeightsError::Unknown);
         assert_eq!(forged(3, 2), WeightsError::Unknown);
         for width in [0, 15, 17, 32, 144, u32::MAX] {

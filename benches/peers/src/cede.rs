@@ -1,8 +1,11 @@
 //! Cede's own network, on a cache line's boundary as `include_weights!` puts it.
 
 use crate::{INPUTS, Layer, Run};
-use cede_controller::Mlp;
-use cede_controller::weights::Aligned;
+use cede_controller::weights::{Aligned, Draft};
+use cede_controller::{FeatureSet, Mlp, Perspective};
+
+/// Enough for the file of a network 128 wide: 17 words and two for each input lie around its parameters.
+const ROOM: usize = Mlp::words(INPUTS, 128) + 17 + 2 * INPUTS;
 
 /// The network in Cede, for widths up to 128.
 ///
@@ -10,15 +13,19 @@ use cede_controller::weights::Aligned;
 /// For layers of another shape.
 #[must_use]
 pub fn cede(layers: &[Layer]) -> Run {
-    let width = layers[0].shape[1];
-    let mut words = Box::new(Aligned([0; Mlp::words(INPUTS, 128)]));
-    let values = layers
+    let parameters = layers
         .iter()
         .flat_map(|layer| layer.biases.iter().chain(&layer.weights));
-    for (word, value) in words.0.iter_mut().zip(values) {
-        *word = value.to_bits();
-    }
-    let words = &Box::leak(words).0[..Mlp::words(INPUTS, width)];
-    let network = Mlp::new(words, INPUTS, width).expect("the shape fits");
+    let draft = Draft {
+        features: FeatureSet::Raw,
+        perspective: Perspective::Ego,
+        width: layers[0].shape[1],
+        provenance: [0; 32],
+        centres: &[0.0; INPUTS],
+        scales: &[1.0; INPUTS],
+        parameters: &parameters.copied().collect::<Vec<f32>>(),
+    };
+    let words = &mut Box::leak(Box::new(Aligned([0; ROOM]))).0;
+    let network = draft.encode(words).expect("the shape fits").network;
     Box::new(move |inputs| Ok(network.forward(inputs)))
 }
