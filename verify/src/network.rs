@@ -8,6 +8,7 @@ mod attack;
 mod bounder;
 mod certificate;
 pub mod check;
+mod feature;
 mod forward;
 mod kernel;
 mod model;
@@ -23,8 +24,9 @@ mod search;
 mod tests;
 pub mod vnnlib;
 
-pub(crate) use bounder::{Bounder, Feature, Worker};
+pub(crate) use bounder::{Bounder, Worker};
 pub use certificate::{Certificate, CertificateError};
+pub(crate) use feature::Feature;
 pub use model::{Activation, Evaluation, Layer, Matrix, ModelError, Network};
 pub use property::{Conjunction, Halfspace, InputBox, Property, Query};
 

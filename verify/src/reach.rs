@@ -12,10 +12,12 @@
 mod scenario;
 mod search;
 mod shield;
+mod states;
 mod step;
 #[cfg(test)]
 mod tests;
 
 pub use scenario::{Claim, Scenario, ScenarioError, Scenarios, geometry};
 pub use search::{Finding, Settled, settle};
-pub use step::{Loop, Moment, Tube};
+pub use states::Moment;
+pub use step::{Loop, Tube};

@@ -1,54 +1,12 @@
 //! Bound propagation behind a front of features, for whoever searches over something other than
 //! the network's own inputs.
 
+use super::feature::Feature;
 use super::model::Network;
 use super::objective::Ascent;
 use super::proof::Refutation;
 use super::propagation::{Interval, Prepared, Workspace};
 use super::property::{Halfspace, InputBox};
-use super::relaxation::Lines;
-
-/// An input of the network as a linear function of the variables of a box:
-/// |input − (constant + slopes · x)| ≤ radius everywhere on it.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Feature {
-    pub(crate) constant: f64,
-    pub(crate) slopes: Vec<f64>,
-    pub(crate) radius: f64,
-}
-
-impl Feature {
-    /// Range of the linear part on the box, rounding included.
-    pub(super) fn linear_range(&self, region: &InputBox) -> Interval {
-        let (mut l, mut u, mut size) = (self.constant, self.constant, self.constant.abs());
-        for ((s, lo), hi) in self.slopes.iter().zip(&region.lower).zip(&region.upper) {
-            let (a, b) = (s * lo, s * hi);
-            l += a.min(b);
-            u += a.max(b);
-            size += a.abs().max(b.abs());
-        }
-        let slack = super::rounding::gamma(self.slopes.len() + 4) * size;
-        (l - slack, u + slack)
-    }
-
-    /// Largest absolute value of the input on the box.
-    pub(crate) fn magnitude(&self, region: &InputBox) -> f64 {
-        let (l, u) = self.linear_range(region);
-        (l.abs().max(u.abs()) + self.radius) * (1.0 + 1e-12)
-    }
-
-    /// The lines that enclose the input, over its linear part.
-    pub(super) fn lines(&self, region: &InputBox) -> Lines {
-        Lines {
-            lower_slope: 1.0,
-            lower_offset: -self.radius,
-            upper_slope: 1.0,
-            upper_offset: self.radius,
-            most: self.magnitude(region),
-            free: false,
-        }
-    }
-}
 
 /// A network, and at most one constraint on its outputs, prepared for bounding.
 pub(crate) struct Bounder {

@@ -7,7 +7,7 @@
 //! positive bound. Where rounding or a looser bound leaves a recorded refutation open, it halves
 //! the box itself, a few times at most.
 
-use super::bounder::Feature;
+use super::feature::Feature;
 use super::model::{Activation, Layer, Network};
 use super::proof::{Cell, Proof, Refutation, Split};
 use super::property::{Conjunction, InputBox, Query};

@@ -1,6 +1,6 @@
 //! Sound bounds for every neuron and for the atoms of a query on a box, layer by layer.
 
-use super::bounder::Feature;
+use super::feature::Feature;
 use super::kernel::{LANES, Lane, compose, padded};
 use super::model::{Activation, Network};
 use super::property::{Halfspace, InputBox};

@@ -1,7 +1,8 @@
 //! Branching over the initial states until every tube shows the claim.
 
 use super::scenario::{Claim, Scenario};
-use super::step::{Loop, Moment, States};
+use super::states::{Moment, States};
+use super::step::Loop;
 use crate::interval::Interval;
 use crate::policy::Subject;
 use cede_sim::encounter::STEP;

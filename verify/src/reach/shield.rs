@@ -3,7 +3,7 @@
 //! Its margins are the controller's own functions, over intervals. Which command it chooses is
 //! decided by their signs: where a sign is not certain, every command that may be chosen counts.
 
-use super::step::States;
+use super::states::States;
 use crate::interval::Interval;
 use cede_controller::shield::reach::Reach;
 use cede_controller::shield::{Contract, Real, margin};

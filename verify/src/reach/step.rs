@@ -2,30 +2,11 @@
 
 use super::scenario::{Scenario, geometry};
 use super::shield::{Commands, Shield, Zone, spent};
+use super::states::{Moment, States};
 use crate::interval::Interval;
 use crate::policy::{Response, Subject};
 use cede_controller::shield::{Contract, Real};
 use cede_sim::encounter::STEP;
-
-/// A set of states of an encounter: a box, and what there is to spare.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct States {
-    /// Ego's metres to its conflict point.
-    pub(super) distance: Interval,
-    /// Ego's speed in m/s.
-    pub(super) speed: Interval,
-    /// Other's metres to its conflict point.
-    pub(super) other_distance: Interval,
-    /// Other's speed in m/s.
-    pub(super) other_speed: Interval,
-    /// Metres that the ego has to spare to its zone if it brakes at once: not free to vary within
-    /// the box, which without it would hold states from which nobody could stop.
-    pub(super) spare: Interval,
-}
-
-/// What is known of one moment of a tube: ranges of the ego's distance (m) to its conflict point and
-/// speed (m/s), then of the other's.
-pub type Moment = [[f64; 2]; 4];
 
 /// The sets of states from one box of initial states, one a step.
 #[derive(Clone, Debug, PartialEq)]
@@ -280,16 +261,4 @@ enum Asked {
     Always,
     Perhaps,
     Never,
-}
-
-impl States {
-    pub(super) fn moment(&self) -> Moment {
-        let sides = [
-            self.distance,
-            self.speed,
-            self.other_distance,
-            self.other_speed,
-        ];
-        sides.map(|side| [side.lo, side.hi])
-    }
 }
