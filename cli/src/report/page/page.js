@@ -51,7 +51,7 @@ function distributions({ distributions, drivers }) {
   draw();
 }
 
-function interventions({ interventions, map }) {
+function interventions({ interventions, map, cases }) {
   const find = (id) => document.getElementById(id);
   find("shielded").append(...interventions.map((d, i) => new Option(`${d.driver} (${d.block})`, i)));
   find("shield").hidden = false;
@@ -61,6 +61,9 @@ function interventions({ interventions, map }) {
     const view = new View(find("interventions"), bounds(Math.min).map((c) => c - 15), bounds(Math.max).map((c) => c + 15));
     view.clear();
     view.map(map);
+    // Without a map the routes of the cases tell where the roads are.
+    const routes = map.lanes.length ? [] : cases.flatMap(({ vehicles }) => vehicles.map(({ route }) => route));
+    for (const route of routes) view.line(route, css("--line"), 3);
     const tints = new Map(Object.entries(REASONS).map(([name, { tint }]) => [name, css(tint)]));
     for (const [point, reason] of points) view.dot(point, 2.5, tints.get(reason));
     const share = ((100 * overruled) / steps).toFixed(2);
