@@ -5,6 +5,7 @@ use super::precedence::Claims;
 use super::real::Real;
 use super::rules::Rules;
 use crate::observation::{Observation, Vehicle};
+use crate::pair::RightOfWay;
 use crate::scene::{MAX_OTHERS, Scene};
 use crate::zone::{FAR, MAX_ZONES, Zone};
 use heapless::Vec;
@@ -72,13 +73,19 @@ impl Hazards {
         seen: &Observation<N>,
         claims: Claims,
     ) {
+        // From where the first zone that precedence opens begins to where the last one ends.
+        let mut open = [FAR, -FAR];
         let pairs = scene.meetings().iter().zip(seen.others.iter());
         for (number, (meeting, other)) in (0_u8..).zip(pairs) {
             let Some(other) = other else { continue };
-            for zone in meeting.zones() {
+            for (index, zone) in (0_u8..).zip(meeting.zones()) {
                 if let Some(hazard) = hazard::<R>(contract, zone, &seen.ego, other) {
                     let vehicles = (&seen.ego, other);
-                    if claims.has(number) && granted(contract, hazard.passage, zone, vehicles) {
+                    if claims.has(number, index)
+                        && granted(contract, hazard.passage, zone, vehicles)
+                    {
+                        let entry = zone.ego.from - seen.ego.s - contract.position_error;
+                        open = [Real::min(open[0], entry), Real::max(open[1], hazard.target)];
                         continue;
                     }
                     self.insert::<R>(Hazard {
@@ -88,7 +95,25 @@ impl Hazards {
                 }
             }
         }
+        if open[0] >= 0.0 {
+            self.keep_clear(scene, open);
+        }
         self.look_beyond();
+    }
+
+    /// In zones that precedence opens, the ego waits only for those who have the right of way. Whoever it holds up there
+    /// may hold up others: if all waited so, each in the way of the next, their rights would go round in a circle.
+    ///
+    /// It may still come to rest there behind those who share its lane.
+    fn keep_clear<const N: usize>(&mut self, scene: &Scene<N>, [from, to]: [f32; 2]) {
+        for hazard in &mut self.sorted {
+            let meeting = scene.meetings().get(usize::from(hazard.other));
+            let yields = meeting.is_some_and(|m| m.right_of_way == RightOfWay::Other);
+            let crosses = matches!(hazard.passage, Passage::Before { .. });
+            if crosses && !yields && (from..to).contains(&hazard.limit) {
+                hazard.limit = from;
+            }
+        }
     }
 
     pub(crate) fn iter(&self) -> impl Iterator<Item = &Hazard> {
@@ -189,7 +214,7 @@ fn behind<R: Rules>(contract: &Contract, gap: f32, other: &Vehicle) -> f32 {
 ///
 /// Into a lane only if the ego is too near for the other to enter ahead of it: one that has
 /// planned to do so, with a safe gap, need not stop, and the ego must then be able to.
-fn granted(
+pub(super) fn granted(
     contract: &Contract,
     passage: Passage,
     zone: &Zone,

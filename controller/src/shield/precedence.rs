@@ -8,20 +8,23 @@ use super::rules::Rules;
 use super::waiting::{Rest, Stay};
 use crate::observation::{Observation, Vehicle};
 use crate::pair::RightOfWay;
-use crate::scene::{Meeting, Scene};
+use crate::scene::{MAX_OTHERS, Meeting, Scene};
 use crate::zone::{Interval, Zone};
 
-/// The others over which the ego has precedence.
+/// The zones in which the ego has precedence, one bit each.
+type Zones = u8;
+
+/// Every zone that the ego shares with another.
+const ALL: Zones = Zones::MAX;
+
+/// In which zones with which others the ego has precedence.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Claims(u32);
+pub(crate) struct Claims(pub(super) [Zones; MAX_OTHERS]);
 
 impl Claims {
-    pub(crate) fn has(self, other: u8) -> bool {
-        self.0.checked_shr(other.into()).unwrap_or(0) & 1 == 1
-    }
-
-    pub(super) fn claim(&mut self, other: u8) {
-        self.0 |= 1_u32.checked_shl(other.into()).unwrap_or(0);
+    pub(crate) fn has(self, other: u8, zone: u8) -> bool {
+        let zones = self.0.get(usize::from(other)).copied().unwrap_or(0);
+        zones.checked_shr(zone.into()).unwrap_or(0) & 1 == 1
     }
 }
 
@@ -55,6 +58,8 @@ enum Turn {
     Past,
     /// The ego's.
     Ego,
+    /// Not the ego's, but it stands in these zones: the other has to wait until it has left them.
+    Inside(Zones),
 }
 
 impl<const N: usize> Precedences<N> {
@@ -72,7 +77,8 @@ impl<const N: usize> Precedences<N> {
     ) -> Claims {
         let mut claims = Claims::default();
         let others = scene.meetings().iter().zip(seen.others.iter());
-        for (number, ((meeting, other), pair)) in (0_u8..).zip(others.zip(self.0.iter_mut())) {
+        let pairs = claims.0.iter_mut().zip(self.0.iter_mut());
+        for ((meeting, other), (claims, pair)) in others.zip(pairs) {
             let Some(other) = other else {
                 pair.lose();
                 continue;
@@ -83,8 +89,10 @@ impl<const N: usize> Precedences<N> {
             pair.other
                 .note(contract, rule, entry(meeting, |z| z.other), other);
             pair.pass::<R>(contract, rule, meeting.right_of_way);
-            if pair.claims(rule, meeting.right_of_way) {
-                claims.claim(number);
+            *claims = pair.claims(rule, meeting.right_of_way);
+            if *claims != ALL {
+                pair.hold::<R>(contract, meeting, &seen.ego);
+                *claims = pair.claims(rule, meeting.right_of_way);
             }
         }
         claims
@@ -139,17 +147,39 @@ impl Pair {
     /// The other is not to be seen.
     fn lose(&mut self) {
         self.other = Party::default();
-        if self.turn == Turn::Ego {
+        if matches!(self.turn, Turn::Ego | Turn::Inside(_)) {
             self.turn = Turn::Past;
         }
     }
 
-    /// Whether the ego has precedence.
-    fn claims(&self, rule: Precedence, right_of_way: RightOfWay) -> bool {
+    /// The zones in which the ego has precedence.
+    fn claims(&self, rule: Precedence, right_of_way: RightOfWay) -> Zones {
+        let first = || precedes(self.ego.arrived, self.other.arrived, rule.tie, right_of_way);
         match self.turn {
-            Turn::First => precedes(self.ego.arrived, self.other.arrived, rule.tie, right_of_way),
-            Turn::Past => false,
-            Turn::Ego => true,
+            Turn::First if first() => ALL,
+            Turn::First | Turn::Past => 0,
+            Turn::Ego => ALL,
+            Turn::Inside(zones) => zones,
+        }
+    }
+
+    /// Whoever stands in a zone while both rest has precedence there until it has left: whosesoever turn it is, the other
+    /// sees it stand there, and has no plan left that counts on the zone.
+    fn hold<R: Rules>(&mut self, contract: &Contract, meeting: &Meeting, ego: &Vehicle) {
+        let periods = R::grace(contract);
+        if self.ego.stay.surely.min(self.other.stay.surely) < periods {
+            return;
+        }
+        // It has been there for all these periods, however it crept.
+        let slow = contract.rest_speed() + 2.0 * contract.speed_error;
+        let crept = f32::from(periods) * contract.period * slow + contract.position_error;
+        let inside = |zone: &Zone| ego.s - crept > zone.ego.from && ego.s < zone.ego.to;
+        let zones = (0_u32..).zip(meeting.zones());
+        let zones = zones.fold(0, |zones, (number, zone)| {
+            zones | Zones::from(inside(zone) && !zone.is_lane()) << number
+        });
+        if zones != 0 {
+            self.turn = Turn::Inside(zones);
         }
     }
 

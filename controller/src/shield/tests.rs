@@ -244,7 +244,7 @@ fn precedence_into_a_lane_is_granted_only_where_the_other_cannot_enter_ahead() {
     let scene = Scene::<2>::new(path(&east()), &[path(&ramp())]).unwrap();
     let zone = *scene.meetings()[0].zones().next().unwrap();
     let mut claims = Claims::default();
-    claims.claim(0);
+    claims.0[0] = u8::MAX;
     let passage = |ego: f32| {
         let seen = seen(vehicle(ego, 0.0), vehicle(zone.other.from - 1.0, 0.0));
         let mut hazards = Hazards::new();
@@ -268,7 +268,7 @@ fn an_ego_with_precedence_may_wait_in_the_zone() {
         vehicle(zone.other.from - 0.1, 0.0),
     );
     let mut claims = Claims::default();
-    claims.claim(0);
+    claims.0[0] = u8::MAX;
     let mut hazards = Hazards::new();
     hazards.add::<2, Sound>(&Contract::ALL_WAY_STOP, &scene, &inside, claims);
     assert_eq!(hazards.iter().count(), 0);

@@ -1,8 +1,10 @@
+use super::super::hazard::{Passage, granted};
 use super::super::rules::Sound;
 use super::*;
 use crate::geometry::{Footprint, Point, Pose};
 use crate::route::Route;
 use crate::scene::Path;
+use crate::zone::MAX_ZONES;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use std::vec::Vec;
@@ -69,24 +71,42 @@ impl Watchers {
         }
     }
 
-    /// Whether each claims precedence, when number `i` sees the arc lengths and speeds `seen[i]` of both, or nothing.
-    fn claims<R: Rules>(&mut self, seen: [Option<[[f32; 2]; 2]>; 2]) -> [bool; 2] {
+    /// What each claims, when number `i` sees the arc lengths and speeds `seen[i]` of both, or nothing.
+    fn claims<R: Rules>(&mut self, seen: [Option<[[f32; 2]; 2]>; 2]) -> [Claim; 2] {
         let rule = self.contract.precedence.unwrap();
         [0, 1].map(|i| {
             let memory = &mut self.memories[i];
             let Some(states) = seen[i] else {
                 memory.blind::<R>(&self.contract, rule);
-                return false;
+                return Claim::default();
             };
+            let (ego, other) = (vehicle(states[i]), vehicle(states[1 - i]));
             let seen = Observation {
-                ego: vehicle(states[i]),
-                others: [Some(vehicle(states[1 - i]))],
+                ego,
+                others: [Some(other)],
             };
-            memory
-                .note::<R>(&self.contract, rule, &self.scenes[i], &seen)
-                .has(0)
+            let claims = memory.note::<R>(&self.contract, rule, &self.scenes[i], &seen);
+            let zone = self.scenes[i].meetings()[0].zones().next().unwrap();
+            let passage = Passage::Before {
+                distance: 0.0,
+                speed: 0.0,
+            };
+            let granted = granted(&self.contract, passage, zone, (&ego, &other));
+            Claim {
+                turn: claims.has(0, MAX_ZONES as u8),
+                relies: claims.has(0, 0) && granted,
+            }
         })
     }
+}
+
+/// What one of the two claims.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Claim {
+    /// Every zone, because it goes first or has its turn.
+    turn: bool,
+    /// The one zone that there is, into which the other need not go: nobody else may rely on it.
+    relies: bool,
 }
 
 fn contract(patience: u16) -> Contract {
@@ -103,7 +123,7 @@ fn turns(patience: u16, rights: [RightOfWay; 2], later: u16, periods: u16) -> st
         .map(|k| {
             let second = if k < later { 1.0 } else { 0.0 };
             let states = [[LINE, 0.0], [LINE - 5.0, second]];
-            match watchers.claims::<Sound>([Some(states); 2]) {
+            match watchers.claims::<Sound>([Some(states); 2]).map(|c| c.turn) {
                 [true, false] => 'a',
                 [false, true] => 'b',
                 [false, false] => '.',
@@ -137,7 +157,7 @@ fn when_the_periods_are_not_counted_any_more_nobody_has_precedence() {
     let last = (0..70_000)
         .map(|_| watchers.claims::<Sound>([Some([[LINE, 0.0]; 2]); 2]))
         .last();
-    assert_eq!(last, Some([false; 2]));
+    assert_eq!(last, Some([Claim::default(); 2]));
 }
 
 /// What a vehicle does for how many periods.
@@ -175,7 +195,7 @@ struct Story {
 prop_compose! {
     fn story()(
         patience in 5_u16..30, error in prop_oneof![Just(0.0_f32), 0.0_f32..0.5],
-        right in 0_usize..3, starts in [-25.0_f32..-2.0, -25.0_f32..-2.0],
+        right in 0_usize..3, starts in [-25.0_f32..3.0, -25.0_f32..3.0],
         manners in [manners(), manners()], seed in any::<u64>(),
     ) -> Story {
         use RightOfWay::{Ego, Other, Unsettled};
@@ -188,8 +208,8 @@ prop_compose! {
     }
 }
 
-/// Whether at some time both have precedence, or one has it though the other, seen at rest all the while, lost
-/// it within the last two periods. The second one sees everything up to a period late, and now and then
+/// Whether at some time both have precedence, or both rely on it, or one does though the other, seen at rest all the while,
+/// did so within the last two periods. The second one sees everything up to a period late, and now and then
 /// not at all what the first one sees in between; both err about speeds.
 fn both<R: Rules>(story: &Story) -> bool {
     let mut watchers = Watchers::new(story.contract, story.rights);
@@ -201,8 +221,7 @@ fn both<R: Rules>(story: &Story) -> bool {
         (random >> 40) as f32 / (1_u32 << 24) as f32
     };
     let length = story.motions[0].len().min(story.motions[1].len());
-    let mut lost = [u16::MAX; 2];
-    let mut had = [false; 2];
+    let (mut turns, mut reliance) = (History::new(), History::new());
     (0..length).any(|k| {
         let mut see = |k: usize| {
             let error = story.contract.speed_error;
@@ -214,17 +233,39 @@ fn both<R: Rules>(story: &Story) -> bool {
         let (prompt, fresh, stale) = (see(k), see(k), see(k.saturating_sub(1)));
         let late = if draw() < 0.5 { fresh } else { stale };
         let claims = watchers.claims::<R>([Some(prompt), Some(late)]);
+        let clash = turns.clashes(claims.map(|claim| claim.turn));
+        reliance.clashes(claims.map(|claim| claim.relies)) || clash
+    })
+}
+
+/// What each of two has had.
+struct History {
+    had: [bool; 2],
+    /// Periods since each has lost it.
+    lost: [u16; 2],
+}
+
+impl History {
+    fn new() -> Self {
+        Self {
+            had: [false; 2],
+            lost: [u16::MAX; 2],
+        }
+    }
+
+    /// Whether both have it, or one gets what the other has just lost.
+    fn clashes(&mut self, has: [bool; 2]) -> bool {
         for i in [0, 1] {
-            lost[i] = match (had[i], claims[i]) {
+            self.lost[i] = match (self.had[i], has[i]) {
                 (_, true) => 0,
                 (true, false) => 1,
-                (false, false) => lost[i].saturating_add(1),
+                (false, false) => self.lost[i].saturating_add(1),
             };
         }
-        let gained = [0, 1].map(|i| claims[i] && !had[i]);
-        had = claims;
-        claims == [true; 2] || (gained[0] && lost[1] < 3) || (gained[1] && lost[0] < 3)
-    })
+        let gained = [0, 1].map(|i| has[i] && !self.had[i]);
+        self.had = has;
+        has == [true; 2] || (gained[0] && self.lost[1] < 3) || (gained[1] && self.lost[0] < 3)
+    }
 }
 
 proptest! {
