@@ -72,6 +72,19 @@ fn two_vehicles_at_rest_pass_by_precedence_and_may_wait_for_ever_without() {
     assert!(worst.cleared < worst.scenarios, "{worst:?}");
 }
 
+/// Of three and more some still block each other for ever; docs/shield.md says how.
+#[test]
+fn several_vehicles_at_rest_pass_by_precedence() {
+    for (vehicles, stuck) in [(3, 1), (6, 2)] {
+        let setup = Setup {
+            vehicles,
+            ..at_rest(Contract::ALL_WAY_STOP)
+        };
+        let tally = campaign::<Sound>(setup, 150, 9);
+        assert!(tally.cleared + stuck >= tally.scenarios, "{tally:?}");
+    }
+}
+
 /// Whether the suite notices that `R` is broken, on set-ups that are safe with the sound rules.
 fn caught<R: Rules>() -> bool {
     Setup::all()

@@ -66,7 +66,8 @@ pub struct Follower {
 /// Who arrived first goes first; in a tie, who has the right of way.
 ///
 /// A vehicle arrives when it comes within `distance` of its zone with the other. The one with
-/// precedence assumes that the other stays out of the zone if it can still stop before it.
+/// precedence assumes that the other stays out of the zone if it can still stop before it. Whoever stands in a zone
+/// has precedence there; nobody waits in one for somebody without the right of way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Precedence {
     /// Metres before the zone at which a vehicle has arrived, in (0, 200].

@@ -3,6 +3,7 @@
 use super::*;
 use crate::geometry::{Footprint, Point, Pose};
 use crate::observation::Vehicle;
+use crate::pair::RightOfWay;
 use crate::route::Route;
 use crate::scene::Path;
 use crate::zone::Interval;
@@ -274,6 +275,34 @@ fn an_ego_with_precedence_may_wait_in_the_zone() {
     assert_eq!(hazards.iter().count(), 0);
     hazards.add::<2, Sound>(&WORST, &scene, &inside, Claims::default());
     assert_eq!(hazards.iter().count(), 1);
+}
+
+/// Where the ego, 5 m before two crossings that overlap, has to stop for the second other, by the right of way over it, if
+/// it has precedence over the first; and where the two zones begin.
+fn stops_for(right_of_way: RightOfWay) -> (f32, [f32; 2]) {
+    let others = [north(), route(&[(2.0, -60.0), (2.0, 60.0)])];
+    let mut scene = Scene::<2>::new(path(&east()), &others.each_ref().map(path)).unwrap();
+    scene.set_right_of_way(1, right_of_way);
+    let zone = |i: usize| *scene.meetings()[i].zones().next().unwrap();
+    let ego = vehicle(zone(0).ego.from - 5.0, 0.0);
+    let others = [0, 1].map(|i| Some(vehicle(zone(i).other.from - 0.1, 0.0)));
+    let mut claims = Claims::default();
+    claims.0[0] = u8::MAX;
+    let mut hazards = Hazards::new();
+    let seen = Observation { ego, others };
+    hazards.add::<2, Sound>(&Contract::ALL_WAY_STOP, &scene, &seen, claims);
+    let limit = hazards.nearest_limit();
+    (limit, [0, 1].map(|i| zone(i).ego.from - ego.s))
+}
+
+#[test]
+fn an_ego_with_precedence_holds_up_others_only_for_whom_it_yields_to() {
+    let (limit, [_, second]) = stops_for(RightOfWay::Other);
+    assert_eq!(limit, second);
+    for right_of_way in [RightOfWay::Ego, RightOfWay::Unsettled] {
+        let (limit, [first, second]) = stops_for(right_of_way);
+        assert!(limit == first && first < second);
+    }
 }
 
 /// Whether the ego is allowed more at a merge by an other that is `worse` than `other`, though it cannot

@@ -150,6 +150,17 @@ fn while_both_rest_precedence_goes_round() {
 }
 
 #[test]
+fn who_stands_in_the_zone_keeps_it() {
+    let mut watchers = Watchers::new(contract(8), [RightOfWay::Ego, RightOfWay::Other]);
+    let claims: Vec<[Claim; 2]> = (0..30)
+        .map(|_| watchers.claims::<Sound>([Some([[LINE + 1.0, 0.0], [LINE - 0.1, 0.0]]); 2]))
+        .collect();
+    // The other has its turn, but there is no way for it.
+    assert!(claims.iter().all(|[one, two]| one.relies && !two.relies));
+    assert!(claims.iter().any(|[one, two]| !one.turn && two.turn));
+}
+
+#[test]
 fn when_the_periods_are_not_counted_any_more_nobody_has_precedence() {
     let long = turns(15, [RightOfWay::Unsettled; 2], 3, u16::MAX);
     assert!(!long.contains('!') && long.len() == 65_535);
