@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 mod interval;
+pub mod margin;
 pub mod network;
 pub mod policy;
 pub mod reach;

@@ -2,6 +2,7 @@
 
 mod campaign;
 mod check;
+mod margins;
 mod network;
 mod policy;
 mod reach;
@@ -19,6 +20,8 @@ pub(crate) enum Verify {
     Policy(policy::Policy),
     /// Where can policy, shield and kinematics get to in an encounter?
     Reach(reach::Reach),
+    /// How far can rounding move the shield's margins?
+    Margins(margins::Margins),
     /// Checks a certificate with code that shares nothing with the prover's.
     Check(check::Check),
     /// What would the shield have allowed recorded drivers?
@@ -34,6 +37,7 @@ impl Verify {
             Self::Network(network) => network.run(),
             Self::Policy(policy) => policy.run(),
             Self::Reach(reach) => reach.run(),
+            Self::Margins(margins) => margins.run(),
             Self::Check(check) => check.run(),
             Self::Shield(shield) => shield.run(),
             Self::Campaign(campaign) => campaign.run(),

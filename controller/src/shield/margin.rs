@@ -67,6 +67,22 @@ pub fn clearing<R: Real>(contract: &Contract, least: Reach<R>, target: R) -> (R,
     )
 }
 
+/// The least number of going periods after the first one with which the ego has gone for long enough
+/// at `clears` (s from now) even if the last command takes effect at once and the first one late.
+///
+/// Cost: constant. Never panics.
+#[must_use]
+pub fn periods(contract: &Contract, clears: f32) -> u16 {
+    let count = (clears - contract.period) / contract.period;
+    // Truncates towards zero and saturates; bounded by the horizon in any case.
+    let whole = count as u16;
+    if f32::from(whole) < count {
+        whole.saturating_add(1)
+    } else {
+        whole
+    }
+}
+
 /// The distance (m) from here at which the ego is at rest at the latest, if it goes for `time` more and then brakes.
 ///
 /// Cost: constant. Never panics.

@@ -63,11 +63,14 @@ impl<R: Real> Reach<R> {
     #[must_use]
     pub fn rushing(self, acceleration: R, cap: R, time: R) -> Self {
         let cap = cap.max(self.speed);
-        let ramp = time.min((cap - self.speed) / acceleration);
+        let limit = (cap - self.speed) / acceleration;
+        let ramp = time.min(limit);
         let gained = (self.speed + acceleration * ramp * R::of(0.5)) * ramp;
+        // Not `time - ramp`, which is the same but would count the error of `time` twice.
+        let steady = (time - limit).max(R::of(0.0));
         Self {
-            distance: self.distance + gained + cap * (time - ramp),
-            speed: cap.min(self.speed + acceleration * ramp),
+            distance: self.distance + gained + cap * steady,
+            speed: cap.min(self.speed + acceleration * time),
         }
     }
 
@@ -88,9 +91,12 @@ impl<R: Real> Reach<R> {
         let left = (target - self.distance).max(R::of(0.0));
         let cap = cap.max(self.speed);
         let twice = acceleration + acceleration;
-        let ramp = left.min((cap - self.speed) * (cap + self.speed) / twice);
+        let limit = (cap - self.speed) * (cap + self.speed) / twice;
+        let ramp = left.min(limit);
         let speed = (self.speed * self.speed + twice * ramp).sqrt();
-        let time = (speed - self.speed).max(R::of(0.0)) / acceleration + (left - ramp) / cap;
+        // Not `left - ramp`, for the reason above.
+        let steady = (left - limit).max(R::of(0.0));
+        let time = (speed - self.speed).max(R::of(0.0)) / acceleration + steady / cap;
         (time, speed)
     }
 }

@@ -42,7 +42,7 @@ pub(crate) fn best<R: Rules>(
             break;
         }
         let plan = Plan {
-            go: periods(contract, clears),
+            go: margin::periods(contract, clears),
         };
         let time = f32::from(plan.go) * contract.period;
         let rest = R::rest(contract, departure.most, time);
@@ -72,18 +72,5 @@ pub(crate) fn passage_margin<R: Rules>(
             margin::enters_ahead(contract, gap, rush, needed)
         }
         Passage::Never => -FAR,
-    }
-}
-
-/// The least number of going periods after the first one with which the ego has gone for long enough
-/// at `clears` (s from now) even if the last command takes effect at once and the first one late.
-fn periods(contract: &Contract, clears: f32) -> u16 {
-    let count = (clears - contract.period) / contract.period;
-    // Truncates towards zero and saturates; bounded by the horizon in any case.
-    let whole = count as u16;
-    if f32::from(whole) < count {
-        whole.saturating_add(1)
-    } else {
-        whole
     }
 }

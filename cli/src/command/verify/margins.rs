@@ -1,0 +1,160 @@
+//! `cede verify margins`.
+
+use crate::failure::Failure;
+use cede_controller::shield::Contract;
+use cede_controller::zone::INFLATION;
+use cede_verify::margin::{Bound, Predicate, bound, shortfall};
+use clap::Args;
+use miette::IntoDiagnostic;
+use std::io::Write as _;
+
+/// The contracts whose margins are bounded: what the rule of precedence adds has none.
+const CONTRACTS: [(&str, Contract); 2] = [
+    ("worst case", Contract::WORST_CASE),
+    (
+        "sensors that err by 0.3 m and 0.3 m/s",
+        Contract {
+            position_error: 0.3,
+            speed_error: 0.3,
+            ..Contract::WORST_CASE
+        },
+    ),
+];
+
+/// How fast (m/s) an ego may be when it stops going.
+const FASTEST: f64 = 20.0;
+
+/// How far can `f32` be from the reals where the shield decides? Exit code 1 if it is not shown that its slack
+/// covers the difference.
+#[derive(Args)]
+pub(crate) struct Margins {
+    /// Boxes of inputs to bound for each predicate, at most: with more the bounds are sharper.
+    #[arg(long, default_value_t = 1_000_000)]
+    boxes: u64,
+    /// Threads to search on; all cores by default.
+    #[arg(long, default_value_t = 0)]
+    threads: usize,
+    /// Print one JSON object instead.
+    #[arg(long)]
+    json: bool,
+}
+
+/// A predicate under a contract, and what is known of it.
+struct Row {
+    contract: &'static str,
+    predicate: Predicate,
+    slack: f32,
+    bound: Bound,
+}
+
+impl Margins {
+    /// Runs the command.
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(self.threads)
+            .build()
+            .into_diagnostic();
+        let (rows, short) = pool.map_err(Failure::Input)?.install(|| {
+            let short = shortfall(&Contract::WORST_CASE);
+            (self.rows(), short)
+        });
+        // A reader that has seen enough may close the pipe.
+        let _ = writeln!(std::io::stdout(), "{}", self.told(&rows, short));
+        let mut open: Vec<String> = rows
+            .iter()
+            .filter(|row| !row.shown())
+            .map(Row::open)
+            .collect();
+        if short * FASTEST > f64::from(INFLATION) {
+            open.push(format!("plans go {short:e} s too short"));
+        }
+        if open.is_empty() {
+            Ok(())
+        } else {
+            Err(Failure::Check(format!("not shown: {}", open.join("; "))))
+        }
+    }
+
+    fn rows(&self) -> Vec<Row> {
+        let all = CONTRACTS
+            .iter()
+            .flat_map(|contract| Predicate::ALL.map(|predicate| (contract, predicate)));
+        all.map(|((name, contract), predicate)| {
+            eprintln!("{}, {name} …", predicate.name());
+            Row {
+                contract: name,
+                predicate,
+                slack: contract.slack,
+                bound: bound(predicate, contract, self.boxes),
+            }
+        })
+        .collect()
+    }
+
+    fn told(&self, rows: &[Row], short: f64) -> String {
+        if self.json {
+            let rows: Vec<_> = rows.iter().map(Row::json).collect();
+            return serde_json::json!({ "margins": rows, "going_short_s": short }).to_string();
+        }
+        let mut lines = vec![format!(
+            "{:<26} {:<38} {:>9} {:>11} {:>8} {:>9}",
+            "predicate", "contract", "boxes", "at most, mm", "met, mm", "slack, mm"
+        )];
+        lines.extend(rows.iter().map(Row::text));
+        let (micros, mm) = (1e6 * short, 1e3 * short * FASTEST);
+        lines.push(format!(
+            "Plans go at most {micros:.1} µs too short, for every f32 up to a minute: {mm:.3} mm at {FASTEST} m/s, of {:.0} mm by which footprints are inflated.",
+            1e3 * INFLATION
+        ));
+        lines.join("\n")
+    }
+}
+
+impl Row {
+    fn shown(&self) -> bool {
+        self.bound.covered_by(self.slack)
+    }
+
+    fn verdict(&self) -> &'static str {
+        if self.shown() { "proved" } else { "not shown" }
+    }
+
+    fn text(&self) -> String {
+        format!(
+            "{:<26} {:<38} {:>9} {:>11.3} {:>8.3} {:>9.0}  {}",
+            self.predicate.name(),
+            self.contract,
+            self.bound.boxes,
+            1e3 * self.bound.error,
+            1e3 * self.bound.seen,
+            1e3 * self.slack,
+            self.verdict()
+        )
+    }
+
+    /// Where the largest error may be.
+    fn open(&self) -> String {
+        let inputs = self.predicate.inputs().iter().zip(self.bound.worst);
+        let ranges: Vec<String> = inputs
+            .map(|(input, [lo, hi])| format!("{} {lo} to {hi}", input.name()))
+            .collect();
+        format!(
+            "{} ({}) for {}",
+            self.predicate.name(),
+            self.contract,
+            ranges.join(", ")
+        )
+    }
+
+    fn json(&self) -> serde_json::Value {
+        let inputs = self.predicate.inputs().iter().zip(self.bound.worst);
+        let worst: serde_json::Map<_, _> = inputs
+            .map(|(input, range)| (input.name().to_owned(), serde_json::json!(range)))
+            .collect();
+        serde_json::json!({
+            "predicate": self.predicate.name(), "contract": self.contract, "boxes": self.bound.boxes,
+            "at_most_m": self.bound.error, "met_m": self.bound.seen, "slack_m": self.slack,
+            "verdict": self.verdict(), "worst": worst,
+        })
+    }
+}
