@@ -25,8 +25,12 @@ pub(super) struct Commands {
     pub(super) stops_short: bool,
 }
 
-/// What `f32` rounding may do to a margin (m): a tenth of the shield's own slack.
-pub(super) const ROUNDING: f64 = 1e-3;
+/// What `f32` rounding may do to the margin of stopping (m): twice what [`crate::margin::bound`] shows.
+pub(super) const STOPPING: f64 = 1e-4;
+/// What it may do to the margin of clearing the zone (m): more than is shown there, again.
+const CLEARING: f64 = 4e-3;
+/// What it may do to a difference of arc lengths (m), with room to spare.
+const PLACE: f64 = 1e-3;
 /// Accelerations of the shield's grid.
 const GRID: u8 = 13;
 
@@ -37,7 +41,7 @@ pub(super) struct Shield {
     pub(super) zone: Zone,
 }
 
-/// The margin of a command: by stopping short of the zone, and by clearing it before the other.
+/// The margin of a command as the shield may compute it: by stopping short of the zone, and by clearing it before the other.
 struct Margins {
     stop: Interval,
     go: Interval,
@@ -49,7 +53,7 @@ impl Margins {
     }
 
     fn may_be_accepted(&self) -> bool {
-        self.best().hi >= -ROUNDING
+        self.best().hi >= 0.0
     }
 }
 
@@ -66,8 +70,8 @@ impl Shield {
         let (braking, most) = (f64::from(ego.braking), f64::from(ego.acceleration));
         let wanted = wanted.clamp(-braking, most);
         let verdict = self.margins(states, previous, wanted);
-        let mut stops_short = verdict.go.hi < -ROUNDING;
-        if verdict.best().lo >= ROUNDING {
+        let mut stops_short = verdict.go.hi < 0.0;
+        if verdict.best().lo >= 0.0 {
             return Commands {
                 range: wanted,
                 stops_short,
@@ -80,7 +84,7 @@ impl Shield {
             (a, self.margins(states, previous, a))
         };
         let grid: Vec<(Interval, Margins)> = (0..GRID).map(command).collect();
-        let safe = |(_, margins): &&(Interval, Margins)| margins.best().lo >= ROUNDING;
+        let safe = |(_, margins): &&(Interval, Margins)| margins.best().lo >= 0.0;
         // The shield takes the nearest that is safe: nothing is farther than the one that certainly is.
         let nearest = grid.iter().filter(safe);
         let nearest = nearest.map(|(a, _)| farthest(*a, wanted)).reduce(f64::min);
@@ -91,7 +95,7 @@ impl Shield {
         let mut range: Option<Interval> = None;
         let mut add = |a: Interval| range = Some(range.map_or(a, |all| all.hull(a)));
         for (a, margins) in possible {
-            stops_short &= margins.go.hi < -ROUNDING;
+            stops_short &= margins.go.hi < 0.0;
             add(*a);
         }
         if verdict.may_be_accepted() {
@@ -132,7 +136,7 @@ impl Shield {
         let go = margin::clears_before(contract, arrives, rush);
         // Who is past has nothing to fear.
         let far = Interval::point(1e6);
-        let passed = |end: Interval| (end.hi <= -ROUNDING, end.lo <= ROUNDING);
+        let passed = |end: Interval| (end.hi <= -PLACE, end.lo <= PLACE);
         let ego = passed(target);
         let other = passed(states.other_distance.add(zone.other.high()));
         let go = if ego.0 || other.0 {
@@ -142,7 +146,10 @@ impl Shield {
         } else {
             go
         };
-        Margins { stop, go }
+        Margins {
+            stop: stop.wider(STOPPING),
+            go: go.wider(CLEARING),
+        }
     }
 
     /// The same margin of stopping from what there is to spare already, which does not lose how

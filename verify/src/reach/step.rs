@@ -155,7 +155,7 @@ impl<'a> Loop<'a> {
         if commands.stops_short {
             // Braking uses up nothing of what there is to spare, and a command that is accepted for
             // its stop leaves the slack: the latency that was counted on is not needed here.
-            let left = f64::from(self.shield.contract.slack) - super::shield::ROUNDING;
+            let left = f64::from(self.shield.contract.slack) - super::shield::STOPPING;
             let least = before.spare.lo.min(left);
             spare = spare.clamp(least, f64::INFINITY);
         }
