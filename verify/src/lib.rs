@@ -6,6 +6,7 @@
 
 mod interval;
 pub mod margin;
+pub mod lemma;
 pub mod network;
 pub mod policy;
 pub mod reach;

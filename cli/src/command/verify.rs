@@ -3,6 +3,7 @@
 mod campaign;
 mod check;
 mod margins;
+mod lemmas;
 mod network;
 mod policy;
 mod reach;
@@ -22,6 +23,8 @@ pub(crate) enum Verify {
     Reach(reach::Reach),
     /// How far can rounding move the shield's margins?
     Margins(margins::Margins),
+    /// Do the steps of the shield's theorem hold, by an SMT solver?
+    Lemmas(lemmas::Lemmas),
     /// Checks a certificate with code that shares nothing with the prover's.
     Check(check::Check),
     /// What would the shield have allowed recorded drivers?
@@ -38,6 +41,7 @@ impl Verify {
             Self::Policy(policy) => policy.run(),
             Self::Reach(reach) => reach.run(),
             Self::Margins(margins) => margins.run(),
+            Self::Lemmas(lemmas) => lemmas.run(),
             Self::Check(check) => check.run(),
             Self::Shield(shield) => shield.run(),
             Self::Campaign(campaign) => campaign.run(),

@@ -1,0 +1,166 @@
+//! `cede verify lemmas`.
+
+use crate::failure::Failure;
+use cede_sim::output;
+use cede_verify::lemma::{Answer, Lemma, Quantity, Settled, Solver, SolverError, lemmas};
+use clap::Args;
+use miette::IntoDiagnostic;
+use rayon::prelude::*;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Has Z3 prove the steps of the shield's theorem (`docs/shield.md`), over the reals, from the margins that
+/// the vehicle executes; and refute each of them with a rule broken. Exit code 1 if a lemma is refuted or
+/// left open, or holds in spite of a broken rule.
+#[derive(Args)]
+pub(crate) struct Lemmas {
+    /// Only this one.
+    #[arg(long, value_name = "LEMMA")]
+    only: Option<String>,
+    /// The solver: a Z3; the one on the search path if none is given.
+    #[arg(long, value_name = "PATH")]
+    solver: Option<PathBuf>,
+    /// Give up on a question after so many seconds.
+    #[arg(long, value_name = "SECONDS", default_value_t = 60)]
+    timeout: u64,
+    /// Also leave the questions here, as SMT-LIB files, for other solvers.
+    #[arg(long, value_name = "DIR")]
+    write: Option<PathBuf>,
+    /// Threads, each of which runs a solver; all cores by default.
+    #[arg(long, default_value_t = 0)]
+    threads: usize,
+    /// Print one JSON object instead.
+    #[arg(long)]
+    json: bool,
+}
+
+/// A lemma and what came of it.
+type Row = (Lemma, Settled);
+
+impl Lemmas {
+    /// Runs the command.
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let chosen: Vec<Lemma> = lemmas()
+            .into_iter()
+            .filter(|lemma| self.only.as_deref().is_none_or(|only| only == lemma.id))
+            .collect();
+        if chosen.is_empty() {
+            let known: Vec<&str> = lemmas().iter().map(|lemma| lemma.id).collect();
+            let mend = format!("one of: {}", known.join(", "));
+            return Err(Failure::input("there is no lemma of this name", mend));
+        }
+        if let Some(folder) = &self.write {
+            write(folder, &chosen)?;
+        }
+        let solver = Solver::find(self.solver.as_deref()).map_err(unusable)?;
+        let rows = self.settle(&solver, chosen)?;
+        // A reader that has seen enough may close the pipe.
+        let _ = writeln!(std::io::stdout(), "{}", self.told(&solver, &rows));
+        let open: Vec<&str> = rows
+            .iter()
+            .filter(|(_, settled)| !settled.proved())
+            .map(|(lemma, _)| lemma.id)
+            .collect();
+        if open.is_empty() {
+            Ok(())
+        } else {
+            Err(Failure::Check(format!("not proved: {}", open.join(", "))))
+        }
+    }
+
+    fn settle(&self, solver: &Solver, lemmas: Vec<Lemma>) -> Result<Vec<Row>, Failure> {
+        let limit = Duration::from_secs(self.timeout);
+        let settle = |lemma: Lemma| {
+            let settled = lemma.settle(solver, limit).map_err(unusable)?;
+            Ok((lemma, settled))
+        };
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(self.threads)
+            .build()
+            .into_diagnostic()
+            .map_err(Failure::Input)?;
+        pool.install(|| lemmas.into_par_iter().map(settle).collect())
+    }
+
+    fn told(&self, solver: &Solver, rows: &[Row]) -> String {
+        if self.json {
+            let rows: Vec<_> = rows.iter().map(json).collect();
+            return serde_json::json!({ "solver": solver.version(), "lemmas": rows }).to_string();
+        }
+        let rows = rows.iter().map(text).collect::<Vec<_>>().join("\n");
+        format!("{rows}\nby Z3 {}", solver.version())
+    }
+}
+
+fn unusable(error: SolverError) -> Failure {
+    let mend = error.mend();
+    Failure::input(error, mend)
+}
+
+/// `LEMMA.smt2`, which should be `unsat`, and `LEMMA-broken.smt2`, which should be `sat`.
+fn write(folder: &Path, lemmas: &[Lemma]) -> Result<(), Failure> {
+    for lemma in lemmas {
+        for (kind, script) in [("", &lemma.claim), ("-broken", &lemma.broken.claim)] {
+            let path = folder.join(format!("{}{kind}.smt2", lemma.id));
+            output::write(&path, |file| file.write_all(script.text.as_bytes()))?;
+        }
+    }
+    Ok(())
+}
+
+fn word(settled: &Settled) -> &'static str {
+    match (&settled.answer, &settled.broken) {
+        (Answer::Unsat, Answer::Sat(_)) => "proved",
+        (Answer::Unsat, _) => "toothless",
+        (Answer::Sat(_), _) => "refuted",
+        (Answer::Unknown(_), _) => "open",
+    }
+}
+
+fn text((lemma, settled): &Row) -> String {
+    let mut text = format!(
+        "{:<12} {:<9} {:>5.1} s  {}\n{:30}given: {}",
+        lemma.id,
+        word(settled),
+        settled.time.as_secs_f64(),
+        lemma.says,
+        "",
+        lemma.given
+    );
+    let mut add = |what: &str, answer: &Answer| {
+        text += &format!("\n{:30}{what}: {}", "", said(answer));
+    };
+    if settled.answer != Answer::Unsat {
+        add("against it", &settled.answer);
+    }
+    add(lemma.broken.what, &settled.broken);
+    text
+}
+
+fn said(answer: &Answer) -> String {
+    match answer {
+        Answer::Unsat => "holds".to_owned(),
+        Answer::Unknown(why) => format!("no answer ({why})"),
+        Answer::Sat(witness) => {
+            let quantity = |q: &Quantity| format!("{} = {:.4} {}", q.name, q.value, q.unit);
+            witness.iter().map(quantity).collect::<Vec<_>>().join(", ")
+        }
+    }
+}
+
+fn json((lemma, settled): &Row) -> serde_json::Value {
+    let witness = |answer: &Answer| match answer {
+        Answer::Sat(witness) => witness.iter().map(value).collect::<Vec<_>>().into(),
+        Answer::Unsat | Answer::Unknown(_) => serde_json::Value::Null,
+    };
+    serde_json::json!({
+        "id": lemma.id, "says": lemma.says, "given": lemma.given,
+        "verdict": word(settled), "seconds": settled.time.as_secs_f64(), "witness": witness(&settled.answer),
+        "broken": { "what": lemma.broken.what, "witness": witness(&settled.broken) },
+    })
+}
+
+fn value(quantity: &Quantity) -> serde_json::Value {
+    serde_json::json!({ "name": quantity.name, "value": quantity.value, "unit": quantity.unit })
+}

@@ -1,0 +1,221 @@
+use super::contract::{any_contract, assumed};
+use super::formula::{Formula, all};
+use super::motion::{metres, number, speed, state};
+use super::term::{Node, Symbol, Term};
+use super::{Answer, Claim, Solver, lemmas};
+use crate::interval::Interval;
+use cede_controller::shield::contract::{Ego, Follower, Other};
+use cede_controller::shield::reach::Reach;
+use cede_controller::shield::{Contract, Real, margin};
+use proptest::prelude::*;
+use std::collections::HashMap;
+use std::time::Duration;
+
+const LIMIT: Duration = Duration::from_secs(60);
+
+fn solver() -> Option<Solver> {
+    let solver = Solver::find(None).ok();
+    if solver.is_none() {
+        eprintln!("skipped: no z3 on the search path");
+    }
+    solver
+}
+
+type Values = HashMap<&'static str, f64>;
+
+fn value(term: Term, of: &Values) -> f64 {
+    let at = |term| value(term, of);
+    match term.node() {
+        Node::Symbol(Symbol { name, .. }) => of[name],
+        Node::Constant(bits) => f32::from_bits(bits).into(),
+        Node::Add(a, b) => at(a) + at(b),
+        Node::Sub(a, b) => at(a) - at(b),
+        Node::Mul(a, b) => at(a) * at(b),
+        Node::Div(a, b) => at(a) / at(b),
+        Node::Neg(a) => -at(a),
+        Node::Sqrt(a) => at(a).sqrt(),
+        Node::Min(a, b) => at(a).min(at(b)),
+        Node::Max(a, b) => at(a).max(at(b)),
+    }
+}
+
+fn holds(formula: &Formula, of: &Values) -> bool {
+    match formula {
+        Formula::Less(a, b) => value(*a, of) < value(*b, of),
+        Formula::AtMost(a, b) => value(*a, of) <= value(*b, of),
+        Formula::Equal(a, b) => value(*a, of) == value(*b, of),
+        Formula::All(parts) => parts.iter().all(|part| holds(part, of)),
+        Formula::Any(parts) => parts.iter().any(|part| holds(part, of)),
+        Formula::Not(part) => !holds(part, of),
+    }
+}
+
+/// The numbers of `contract` by the names that the lemmas give them.
+fn numbers(contract: &Contract) -> Values {
+    let Contract {
+        ego,
+        other,
+        follower,
+        ..
+    } = contract;
+    [
+        ("period", contract.period),
+        ("latency", contract.latency),
+        ("position_error", contract.position_error),
+        ("speed_error", contract.speed_error),
+        ("slack", contract.slack),
+        ("ego.max_speed", ego.max_speed),
+        ("ego.acceleration", ego.acceleration),
+        ("ego.go", ego.go),
+        ("ego.braking", ego.braking),
+        ("other.max_speed", other.max_speed),
+        ("other.acceleration", other.acceleration),
+        ("other.braking", other.braking),
+        ("follower.reaction", follower.reaction),
+        ("follower.braking", follower.braking),
+    ]
+    .map(|(name, value)| (name, value.into()))
+    .into()
+}
+
+/// Margins of every kind, over any numbers.
+fn margins<R: Real>(contract: &Contract, [s, v, other_v, target]: [R; 4]) -> [R; 6] {
+    let departure = margin::departure(contract, v, [-v, v], s);
+    let (clears, clearing_speed) = margin::clearing(contract, departure.least, target);
+    let rush = margin::rush(contract, other_v, clears);
+    let needed = margin::safe_gap(contract, rush.speed, clearing_speed);
+    [
+        clears,
+        margin::clears_before(contract, target, rush),
+        margin::enters_ahead(contract, target, rush, needed),
+        margin::rest(contract, departure.most, clears),
+        margin::stops_short(contract, target, departure.braking.rest(v + R::of(1.0))),
+        margin::earliest_rest(contract, other_v),
+    ]
+}
+
+fn names() -> [Term; 4] {
+    let Reach { distance, speed: v } = state(["s", "v"]);
+    [distance, v, speed("other_v"), metres("target")]
+}
+
+prop_compose! {
+    fn contracts()(
+        times in [0.01_f32..1.0, 0.0..1.0, 0.0..3.0], errors in [0.0_f32..2.0, 0.0..2.0],
+        speeds in [0.5_f32..20.0, 0.5..20.0], accelerations in [0.1_f32..10.0, 0.1..10.0, 0.1..10.0],
+        [go, b, b_f] in [0.1_f32..1.0, 0.1..1.0, 0.1..1.0],
+    ) -> Contract {
+        Contract {
+            period: times[0],
+            latency: times[0] * times[1],
+            position_error: errors[0],
+            speed_error: errors[1],
+            slack: 0.01,
+            ego: Ego {
+                max_speed: speeds[0],
+                acceleration: accelerations[0],
+                go: go * accelerations[0],
+                braking: b * accelerations[2],
+            },
+            other: Other {
+                max_speed: speeds[1],
+                acceleration: accelerations[1],
+                braking: accelerations[2],
+            },
+            follower: Follower { reaction: times[2], braking: b_f * accelerations[2] },
+            precedence: None,
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn a_term_is_what_the_margin_computes(
+        contract in contracts(), s in -5.0_f32..5.0, v in 0.0_f32..20.0, other_v in 0.0_f32..20.0, target in -10.0_f32..100.0,
+    ) {
+        let inputs = [s, v, other_v, target];
+        let mut of = numbers(&contract);
+        of.extend(["s", "v", "other_v", "target"].into_iter().zip(inputs.map(f64::from)));
+        let terms = margins(&any_contract(), names());
+        let enclosed = margins(&contract, inputs.map(Interval::of));
+        for (term, interval) in terms.into_iter().zip(enclosed) {
+            prop_assert!(interval.contains(value(term, &of)), "{} not in {interval:?}", value(term, &of));
+        }
+    }
+
+    #[test]
+    fn a_contract_keeps_what_the_lemmas_assume_of_it(contract in contracts()) {
+        prop_assert!(contract.checked().is_ok());
+        prop_assert!(holds(&all(assumed()), &numbers(&contract)));
+    }
+}
+
+#[test]
+fn every_number_of_a_contract_has_its_name() {
+    let contract = any_contract();
+    let [ego, other] = [contract.ego.braking, contract.other.braking].map(Term::of);
+    assert_ne!(ego, other);
+    let mut of = numbers(&Contract::WORST_CASE);
+    assert_eq!(value(other, &of), 8.0);
+    of.insert("ego.braking", 2.5);
+    assert_eq!(value(ego, &of), 2.5);
+}
+
+#[test]
+fn equal_expressions_are_one_term() {
+    let [a, b] = ["s", "t"].map(metres);
+    assert_eq!(a + b, metres("s") + b);
+    assert_ne!(a + b, b + a);
+}
+
+#[test]
+fn what_the_solver_reads_is_what_the_term_is() {
+    let Some(solver) = solver() else { return };
+    let contract = Contract::WORST_CASE;
+    let inputs = [-1.7_f32, 6.1, 8.3, 23.9];
+    let mut of = numbers(&contract);
+    of.extend(
+        ["s", "v", "other_v", "target"]
+            .into_iter()
+            .zip(inputs.map(f64::from)),
+    );
+    let fixed = names().into_iter().zip(inputs);
+    let fixed: Vec<Formula> = fixed.map(|(name, x)| name.equal(number(x))).collect();
+    for term in margins(&contract, names()) {
+        let near = |off: f32| {
+            let value = number(value(term, &of) as f32);
+            let off = number(off);
+            let close = all([(value - off).at_most(term), term.at_most(value + off)]);
+            let script = Claim::new(fixed.clone(), close).script("near");
+            solver.ask(&script, LIMIT).expect("a solver")
+        };
+        assert_eq!(near(1e-4), Answer::Unsat);
+    }
+}
+
+#[test]
+fn all_lemmas_are_proved_and_fail_when_broken() {
+    let Some(solver) = solver() else { return };
+    for lemma in lemmas() {
+        let settled = lemma.settle(&solver, LIMIT).expect("a solver");
+        assert!(settled.proved(), "{}: {settled:?}", lemma.id);
+    }
+}
+
+#[test]
+fn a_missing_solver_says_what_to_install() {
+    let error = Solver::find(Some("/nowhere/z3".as_ref())).expect_err("nothing is there");
+    assert!(error.to_string().contains("/nowhere/z3"));
+    assert!(error.mend().contains("apt-get install z3"));
+    let error = Solver::find(Some("true".as_ref())).expect_err("true is no solver");
+    assert!(error.to_string().contains("not Z3"));
+}
+
+#[test]
+fn lemmas_have_names_of_their_own() {
+    let mut names: Vec<&str> = lemmas().iter().map(|lemma| lemma.id).collect();
+    let count = names.len();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), count);
+}
