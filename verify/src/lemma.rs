@@ -8,6 +8,7 @@
 mod apart;
 mod contract;
 mod departure;
+mod entry;
 mod formula;
 mod motion;
 mod reach;
@@ -153,6 +154,7 @@ pub fn lemmas() -> Vec<Lemma> {
         departure::lemmas(),
         tail::lemmas(),
         apart::lemmas(),
+        entry::lemmas(),
     ];
     groups.into_iter().flatten().collect()
 }

@@ -202,6 +202,26 @@ fn all_lemmas_are_proved_and_fail_when_broken() {
     }
 }
 
+/// Among others that are slower and gentler than the ego a gap for the last moment at which it may enter need not do
+/// for an earlier one: what `entry-ramp` and `entry-cap` assume is necessary.
+#[test]
+fn among_gentle_others_an_ego_that_enters_sooner_lacks_the_gap() {
+    let mut contract = Contract::WORST_CASE;
+    let missing = |contract: &Contract| {
+        let (seen, now, time) = (1.0_f32, 2.0, 0.4);
+        let rush = margin::rush(contract, seen, time);
+        let then = now + contract.ego.go * time;
+        let verified = rush.distance + margin::safe_gap(contract, rush.speed, then);
+        margin::safe_gap(contract, seen, now) - (verified + contract.slack)
+    };
+    assert!(missing(&contract) < 0.0);
+    contract.other.acceleration = 0.1;
+    contract.other.max_speed = 1.0;
+    assert!(missing(&contract) < 0.0);
+    contract.follower.reaction = 1.5;
+    assert!(missing(&contract) > 0.25, "{}", missing(&contract));
+}
+
 #[test]
 fn a_missing_solver_says_what_to_install() {
     let error = Solver::find(Some("/nowhere/z3".as_ref())).expect_err("nothing is there");

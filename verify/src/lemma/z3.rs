@@ -73,7 +73,8 @@ impl Solver {
         let path = path.unwrap_or(Path::new("z3")).to_owned();
         match Command::new(&path).arg("--version").output() {
             Ok(output) => {
-                let said = String::from_utf8_lossy(&output.stdout).trim().to_owned();
+                let said = String::from_utf8_lossy(&output.stdout);
+                let said = said.lines().next().unwrap_or_default().to_owned();
                 match said.strip_prefix("Z3 version ") {
                     Some(version) => Ok(Self {
                         version: version.to_owned(),
