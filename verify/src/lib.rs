@@ -5,8 +5,8 @@
 #![forbid(unsafe_code)]
 
 mod interval;
-pub mod margin;
 pub mod lemma;
+pub mod margin;
 pub mod network;
 pub mod policy;
 pub mod reach;

@@ -2,8 +2,8 @@
 
 mod campaign;
 mod check;
-mod margins;
 mod lemmas;
+mod margins;
 mod network;
 mod policy;
 mod reach;
