@@ -42,7 +42,7 @@ pub(super) fn lemmas() -> Vec<Lemma> {
         Lemma::new(
             [
                 "tail-arrival",
-                "having rushed for a while, an other leaves no less to spare before its zone",
+                "having rushed for a while, an other leaves no less to spare before its zone, and arrives no faster",
                 "it is within its bound, and rushes for what is left of the time",
             ],
             &arrival(margin::rush),
@@ -55,12 +55,12 @@ pub(super) fn lemmas() -> Vec<Lemma> {
             [
                 "tail-entry",
                 "having rushed for a while, an other leaves no less to spare behind an ego that enters ahead",
-                "it is within its bound, and rushes for what is left of the time; the ego's speed at entry as verified",
+                "it comes no nearer and arrives no faster than was verified: `tail-arrival`; the ego's speed as verified",
             ],
-            &entry(margin::rush),
+            &entry(margin::safe_gap),
             (
-                "the acceleration forgotten",
-                &entry(|_, speed, time| Reach::start(speed).at_most(number(0.0), time)),
+                "the one ahead taken for the one behind",
+                &entry(|contract, speed, ego| margin::safe_gap(contract, ego, speed)),
             ),
         ),
     ]
@@ -106,66 +106,39 @@ fn stopping(order: impl Fn(Term, Term) -> Formula) -> Claim {
 
 type Rush = fn(&Contract, Term, Term) -> Reach<Term>;
 
-/// An other that is seen now, and may be anywhere within its bound later.
-struct Other {
-    contract: Contract,
-    seen: Term,
-    then: Reach<Term>,
-    time: Term,
-    left: Term,
-    given: Vec<Formula>,
-}
-
-fn other() -> Other {
-    let contract = any_contract();
-    let (seen, then) = (speed("seen"), state(["t", "v"]));
-    let (time, left) = (seconds("time"), seconds("left"));
-    let given = vec![
-        not_negative([time, left, seen, then.speed]),
-        within(then, margin::rush(&contract, seen, time)),
-    ];
-    Other {
-        contract,
-        seen,
-        then,
-        time,
-        left,
-        given,
-    }
-}
-
 fn arrival(rule: Rush) -> Claim {
-    let Other {
-        contract,
-        seen,
-        then,
-        time,
-        left,
-        given,
-    } = other();
-    let distance = metres("distance");
-    let margin = |distance, rush| margin::clears_before(&contract, distance, rush);
-    let first = margin(distance, rule(&contract, seen, time + left));
-    let later = margin(distance - then.distance, rule(&contract, then.speed, left));
-    Claim::new(given, first.at_most(later))
+    let contract = any_contract();
+    let (seen, then, distance) = (speed("seen"), state(["t", "v"]), metres("distance"));
+    let (time, left) = (seconds("time"), seconds("left"));
+    let spare = |distance, rush| margin::clears_before(&contract, distance, rush);
+    let first = rule(&contract, seen, time + left);
+    let later = rule(&contract, then.speed, left);
+    Claim::new(
+        [
+            not_negative([time, left, seen, then.speed]),
+            within(then, margin::rush(&contract, seen, time)),
+        ],
+        all([
+            spare(distance, first).at_most(spare(distance - then.distance, later)),
+            later.speed.at_most(first.speed),
+        ]),
+    )
 }
 
-fn entry(rule: Rush) -> Claim {
-    let Other {
-        contract,
-        seen,
-        then,
-        time,
-        left,
-        given,
-    } = other();
-    let (gap, ego) = (metres("gap"), speed("ego_speed"));
-    let margin = |gap, rush: Reach<Term>| {
-        let needed = margin::safe_gap(&contract, rush.speed, ego);
+fn entry(rule: fn(&Contract, Term, Term) -> Term) -> Claim {
+    let contract = any_contract();
+    let (gap, way, ego) = (metres("gap"), metres("t"), speed("ego_speed"));
+    let (first, later) = (state(["first", "first_v"]), state(["later", "later_v"]));
+    let spare = |gap, rush: Reach<Term>| {
+        let needed = rule(&contract, rush.speed, ego);
         margin::enters_ahead(&contract, gap, rush, needed)
     };
-    let first = margin(gap, rule(&contract, seen, time + left));
-    let later = margin(gap - then.distance, rule(&contract, then.speed, left));
-    let given = given.into_iter().chain([not_negative([ego])]);
-    Claim::new(given, first.at_most(later))
+    Claim::new(
+        [
+            not_negative([ego, later.speed]),
+            (way + later.distance).at_most(first.distance),
+            later.speed.at_most(first.speed),
+        ],
+        spare(gap, first).at_most(spare(gap - way, later)),
+    )
 }
