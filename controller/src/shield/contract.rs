@@ -4,6 +4,9 @@
 ///
 /// Guarantee: the ego is never in a conflict zone together with another vehicle, and never
 /// hits a vehicle ahead of it in its lane. `docs/shield.md` has the theorem.
+///
+/// Where it enters a lane ahead of another, the guarantee needs others that are no lamer than the ego: the ego's `acceleration` at most theirs and
+/// at most `braking` or the follower's, its `max_speed` at most theirs, as in the named contracts. This is not checked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contract {
     /// Time from one decision to the next in s, in (0, 1].
