@@ -1,8 +1,8 @@
 //! The steps of the shield's theorem (`docs/shield.md`) as lemmas over the reals, for an SMT solver.
 //!
-//! The shield's margins are generic over their numbers. Here they run on [expressions](term), so what the
-//! solver is asked about is the code that flies, of a [contract] whose numbers are names: a lemma
-//! holds for every contract in its range. How vehicles really move is [written down](motion) beside it.
+//! The shield's margins are generic over their numbers. Here they run on expressions, so what the
+//! solver is asked about is the code that flies, of a contract whose numbers are names: a lemma
+//! holds for every contract in its range. How vehicles really move is written down beside it.
 //! Every lemma is also asked with a broken rule, and must then fail.
 
 mod apart;
