@@ -12,6 +12,7 @@ mod entry;
 mod formula;
 mod motion;
 mod reach;
+mod symbol;
 mod tail;
 mod term;
 #[cfg(test)]

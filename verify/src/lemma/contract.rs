@@ -1,42 +1,10 @@
 //! A contract whose numbers are names: what is proved with it holds for every contract.
-//!
-//! The margins read a contract's `f32` and turn each into [`Real::of`]. A NaN is no number that a contract
-//! may have, so its payload is free to say which symbol it stands for.
 
 use super::formula::Formula;
-use super::term::{Symbol, Term};
+use super::symbol::stand_ins;
+use super::term::Term;
 use cede_controller::shield::contract::{Ego, Follower, Other};
 use cede_controller::shield::{Contract, Real};
-
-/// A quiet NaN; the low bits number the symbol.
-const STAND_IN: u32 = 0x7fc0_0000;
-
-const SYMBOLS: [Symbol; 14] = [
-    named("period", "s"),
-    named("latency", "s"),
-    named("position_error", "m"),
-    named("speed_error", "m/s"),
-    named("slack", "m"),
-    named("ego.max_speed", "m/s"),
-    named("ego.acceleration", "m/s²"),
-    named("ego.go", "m/s²"),
-    named("ego.braking", "m/s²"),
-    named("other.max_speed", "m/s"),
-    named("other.acceleration", "m/s²"),
-    named("other.braking", "m/s²"),
-    named("follower.reaction", "s"),
-    named("follower.braking", "m/s²"),
-];
-
-const fn named(name: &'static str, unit: &'static str) -> Symbol {
-    Symbol { name, unit }
-}
-
-/// What `value` stands for, if it is a stand-in.
-pub(super) fn symbol(value: f32) -> Option<Symbol> {
-    let number = value.to_bits().checked_sub(STAND_IN)?;
-    SYMBOLS.get(usize::try_from(number).ok()?).copied()
-}
 
 /// The contract of which nothing is known but what [`assumed`] says.
 pub(super) fn any_contract() -> Contract {
@@ -55,7 +23,7 @@ pub(super) fn any_contract() -> Contract {
         other_braking,
         reaction,
         follower_braking,
-    ] = std::array::from_fn(|i| f32::from_bits(STAND_IN + i as u32));
+    ] = stand_ins();
     Contract {
         period,
         latency,

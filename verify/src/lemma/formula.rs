@@ -1,6 +1,7 @@
 //! What is said of terms, and how solvers are told.
 
-use super::term::{Node, Symbol, Term};
+use super::symbol::Symbol;
+use super::term::{Node, Term};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 

@@ -1,20 +1,11 @@
 //! A number that is not known: what the shield's own functions make of it is an expression.
 
-use super::contract;
+use super::symbol::{Symbol, stands_for};
 use cede_controller::shield::Real;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::marker::PhantomData;
 use std::ops::{Add, Div, Mul, Neg, Sub};
-
-/// A quantity that a lemma speaks of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(crate) struct Symbol {
-    /// As solvers see it.
-    pub(crate) name: &'static str,
-    /// Its SI unit.
-    pub(crate) unit: &'static str,
-}
 
 /// How a term came about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -95,7 +86,7 @@ impl Term {
 impl Real for Term {
     /// The number; the contract's symbol, if it is the stand-in of one.
     fn of(value: f32) -> Self {
-        match contract::symbol(value) {
+        match stands_for(value) {
             Some(symbol) => Self::new(Node::Symbol(symbol)),
             None => Self::new(Node::Constant(value.to_bits())),
         }

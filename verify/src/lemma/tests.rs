@@ -1,7 +1,8 @@
 use super::contract::{any_contract, assumed};
 use super::formula::{Formula, all};
 use super::motion::{metres, number, speed, state};
-use super::term::{Node, Symbol, Term};
+use super::symbol::Symbol;
+use super::term::{Node, Term};
 use super::{Answer, Claim, Solver, lemmas};
 use crate::interval::Interval;
 use cede_controller::shield::contract::{Ego, Follower, Other};
