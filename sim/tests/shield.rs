@@ -85,6 +85,24 @@ fn several_vehicles_at_rest_pass_by_precedence() {
     }
 }
 
+/// The table of docs/shield.md: `cargo test --release -p cede-sim --test shield get_through -- --ignored --nocapture`.
+#[test]
+#[ignore = "prints a table, in half a minute"]
+fn how_many_get_through() {
+    for vehicles in [2, 3, 4, 6] {
+        let setup = Setup {
+            vehicles,
+            ..at_rest(Contract::ALL_WAY_STOP)
+        };
+        for scenarios in [1000, 3000] {
+            let runs = [1, 100_001].map(|seed| campaign::<Sound>(setup, scenarios, seed));
+            let both = runs[0].plus(runs[1]);
+            println!("{vehicles}: {} of {}", both.cleared, both.scenarios);
+            assert_safe("from rest", &both);
+        }
+    }
+}
+
 /// Whether the suite notices that `R` is broken, on set-ups that are safe with the sound rules.
 fn caught<R: Rules>() -> bool {
     Setup::all()

@@ -16,7 +16,7 @@ use std::time::Duration;
 #[derive(Args)]
 pub(crate) struct Lemmas {
     /// Only this one.
-    #[arg(long, value_name = "LEMMA")]
+    #[arg(long, value_name = "LEMMA", value_parser = known)]
     only: Option<String>,
     /// The solver: a Z3; the one on the search path if none is given.
     #[arg(long, value_name = "PATH")]
@@ -45,11 +45,6 @@ impl Lemmas {
             .into_iter()
             .filter(|lemma| self.only.as_deref().is_none_or(|only| only == lemma.id))
             .collect();
-        if chosen.is_empty() {
-            let known: Vec<&str> = lemmas().iter().map(|lemma| lemma.id).collect();
-            let mend = format!("one of: {}", known.join(", "));
-            return Err(Failure::input("there is no lemma of this name", mend));
-        }
         if let Some(folder) = &self.write {
             write(folder, &chosen)?;
         }
@@ -90,6 +85,19 @@ impl Lemmas {
         }
         let rows = rows.iter().map(text).collect::<Vec<_>>().join("\n");
         format!("{rows}\nby Z3 {}", solver.version())
+    }
+}
+
+/// The name of a lemma.
+fn known(name: &str) -> Result<String, String> {
+    let names: Vec<&str> = lemmas().iter().map(|lemma| lemma.id).collect();
+    if names.contains(&name) {
+        Ok(name.to_owned())
+    } else {
+        Err(format!(
+            "there is no such lemma; there are: {}",
+            names.join(", ")
+        ))
     }
 }
 
