@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use cede_controller::{Contract, Policy};
-use cede_sim::Encounter;
+use cede_data::Encounter;
 use cede_sim::driver::{Baseline, Cede, DriverFactory, FitError, PolicyAlone, Shielded};
 use cede_sim::weights;
 use std::path::Path;
@@ -67,7 +67,7 @@ impl Drivers {
 /// The file cannot be used.
 pub(crate) fn policy(weights: Option<&Path>) -> Result<Policy<'static>, Failure> {
     let Some(file) = weights else {
-        let words = cede_controller::embedded::words();
+        let words = cede_controller::policy::embedded::words();
         return Policy::new(words).map_err(|error| Failure::input(error, "report this as a bug"));
     };
     weights::load(file)

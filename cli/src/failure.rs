@@ -1,7 +1,7 @@
 //! Why a command ended badly, and the exit code that says so.
 
-use cede_sim::data::DataError;
-use cede_sim::output::OutputError;
+use cede_data::DataError;
+use cede_data::output::OutputError;
 use std::process::ExitCode;
 
 /// Why a command ended badly. Usage errors (exit code 2) are clap's.

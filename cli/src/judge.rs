@@ -4,7 +4,7 @@ use crate::drivers::Contender;
 use crate::failure::Failure;
 use crate::interrupt;
 use cede_controller::Contract;
-use cede_sim::Dataset;
+use cede_data::Dataset;
 use cede_sim::driver::{Baseline, FitError};
 use cede_sim::episode::Until;
 use cede_sim::evaluate::{Drive, Label, Mode, Protocol, Round, Row, Selection, evaluate};

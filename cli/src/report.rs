@@ -1,7 +1,7 @@
 //! The report: one HTML file that needs no network, with the table, replays and charts.
 //!
 //! The page draws itself from the JSON in it ([`model`]); a section for which
-//! there is no data stays out of sight.
+//! there is no data stays out of model.
 
 mod cases;
 mod model;
@@ -12,10 +12,10 @@ pub(crate) use why::{Class, words};
 
 use crate::failure::Failure;
 use cede_controller::Contract;
-use cede_sim::data::Split;
+use cede_data::{Dataset, Encounter, EncounterId, Role, Split, output};
 use cede_sim::evaluate::{Drive, Row};
-use cede_sim::{Dataset, Encounter, EncounterId, Role, output, transparency};
-use cede_train::curve::Point;
+use cede_sim::transparency;
+use cede_train::run::curve::Point;
 use model::{Case, Episodes, Interventions, Page};
 use serde::Serialize;
 use std::collections::HashMap;

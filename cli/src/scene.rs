@@ -2,10 +2,8 @@
 
 use crate::failure::Failure;
 use cede_controller::ConflictKind;
-use cede_sim::Dataset;
-use cede_sim::Manoeuvre;
-use cede_sim::data::lanelet::{LineKind, Map};
-use cede_sim::output;
+use cede_data::lanelet::{LineKind, Map};
+use cede_data::{Dataset, Manoeuvre, output};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -15,7 +13,7 @@ const SCALE: f64 = 8.0;
 const MARGIN: f64 = 3.0;
 /// Room for the legend below it, m.
 const LEGEND: f64 = 8.0;
-/// Without a map, as much of the tracks' surroundings is drawn, m.
+/// Without a map, as much of the tracks' traffic is drawn, m.
 const WITHOUT_MAP: f64 = 1.0;
 
 /// What the colours mean, in the order of the legend.

@@ -1,7 +1,7 @@
 //! Where encounters come from: a folder of recordings, or the synthetic generator.
 
 use crate::failure::Failure;
-use cede_sim::Dataset;
+use cede_data::Dataset;
 use std::path::Path;
 
 /// The options that name a data set.

@@ -2,8 +2,8 @@
 
 use crate::failure::Failure;
 use crate::interrupt;
-use cede_train::checkpoint::{Checkpoint, CheckpointError};
-use cede_train::curve::{Curve, Panel, Point};
+use cede_train::run::checkpoint::{Checkpoint, CheckpointError};
+use cede_train::run::curve::{Curve, Panel, Point};
 use cede_train::run::{Algorithm, Lessons, Report, Run, Settings};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};

@@ -4,7 +4,7 @@
 mod processor;
 
 use cede_controller::Mlp;
-use cede_controller::weights::Aligned;
+use cede_controller::policy::weights::Aligned;
 use criterion::{Criterion, criterion_group, criterion_main};
 use processor::CpuTime;
 use std::hint::black_box;

@@ -1,14 +1,14 @@
 //! The controller: from an observation, through policy and shield, to a decision.
 
-use crate::conflict::ConflictKind;
-use crate::decision::{Decision, Outlook};
+use crate::decision::{Decision, Prediction};
 use crate::geometry::{Footprint, Point};
+use crate::junction::conflict::ConflictKind;
+use crate::junction::scene::{RouteConflict, Scene};
 use crate::observation::{Fault, Observation, Vehicle};
-use crate::pair::{Pair, Part, Party};
 use crate::policy::Policy;
-use crate::scene::{Meeting, Scene};
+use crate::policy::pair::{Pair, Part, VehicleState};
+use crate::policy::traffic::{NearbyVehicle, TrafficContext};
 use crate::shield::{Contract, ContractError, Shield};
-use crate::surroundings::{Around, Surroundings};
 use core::f32::consts::FRAC_PI_4;
 
 /// Acceleration (m/s²) that is proposed when there is nobody left to meet.
@@ -43,8 +43,8 @@ pub struct Controller<'w, const N: usize> {
     part: Part,
     /// The ego's SVO towards each other at the last step.
     orientations: [f32; N],
-    /// See [`Controller::set_surroundings`].
-    around: Surroundings,
+    /// See [`Controller::set_traffic`].
+    around: TrafficContext,
 }
 
 impl<'w, const N: usize> Controller<'w, N> {
@@ -58,7 +58,7 @@ impl<'w, const N: usize> Controller<'w, N> {
             shield: Shield::new(contract)?,
             part,
             orientations: [FRAC_PI_4; N],
-            around: Surroundings::default(),
+            around: TrafficContext::default(),
         })
     }
 
@@ -74,7 +74,7 @@ impl<'w, const N: usize> Controller<'w, N> {
     /// considers the scene alone.
     ///
     /// Cost: constant. Never panics.
-    pub const fn set_surroundings(&mut self, around: Surroundings) {
+    pub const fn set_traffic(&mut self, around: TrafficContext) {
         self.around = around;
     }
 
@@ -88,9 +88,9 @@ impl<'w, const N: usize> Controller<'w, N> {
     /// acceleration is finite and within the contract's, whatever the bits of the observation.
     pub fn decide(&mut self, scene: &Scene<N>, observation: &Observation<N>) -> Decision {
         // The shield finds a fault again and carries on with its plan.
-        let (acceleration, outlook) = self.ask(scene, observation).unwrap_or((0.0, None));
+        let (acceleration, prediction) = self.ask(scene, observation).unwrap_or((0.0, None));
         Decision {
-            outlook,
+            prediction,
             ..self.shield.filter(scene, observation, acceleration)
         }
     }
@@ -101,8 +101,8 @@ impl<'w, const N: usize> Controller<'w, N> {
         &mut self,
         scene: &Scene<N>,
         observation: &Observation<N>,
-    ) -> Result<(f32, Option<Outlook>), Fault> {
-        let seen = observation.checked(scene.meetings().len());
+    ) -> Result<(f32, Option<Prediction>), Fault> {
+        let seen = observation.checked(scene.conflicts().len());
         let seen = seen.as_ref().map_err(|&fault| fault)?;
         Ok(self.propose(scene, seen))
     }
@@ -117,57 +117,62 @@ impl<'w, const N: usize> Controller<'w, N> {
             .map_or(0.0, |(acceleration, _)| acceleration)
     }
 
-    fn propose(&mut self, scene: &Scene<N>, seen: &Observation<N>) -> (f32, Option<Outlook>) {
+    fn propose(&mut self, scene: &Scene<N>, seen: &Observation<N>) -> (f32, Option<Prediction>) {
         let mut proposal = (FREE, None);
         let around = self.around;
-        let others = scene.meetings().iter().zip(seen.others.iter());
-        for ((number, last_svo), (meeting, other)) in
+        let others = scene.conflicts().iter().zip(seen.others.iter());
+        for ((number, last_svo), (conflict, other)) in
             (0_u8..).zip(self.orientations.iter_mut()).zip(others)
         {
             let Some(other) = other else { continue };
-            if !ahead(meeting, &seen.ego, other) {
+            if !ahead(conflict, &seen.ego, other) {
                 continue;
             }
-            let surroundings = surroundings(scene, seen, number).nearest(around);
+            let traffic = traffic(scene, seen, number).nearest(around);
             let pair = Pair {
-                ego: Party {
-                    leader: surroundings.leader,
-                    crosser: surroundings.crosser,
-                    ..party(
+                ego: VehicleState {
+                    leader: traffic.leader,
+                    crosser: traffic.crosser,
+                    ..vehicle_state(
                         &seen.ego,
                         scene.exit(),
-                        meeting.ego_conflict,
+                        conflict.ego_conflict,
                         scene.footprint(),
                     )
                 },
-                other: party(
+                other: vehicle_state(
                     other,
-                    meeting.other_exit,
-                    meeting.other_conflict,
-                    meeting.other_footprint,
+                    conflict.other_exit,
+                    conflict.other_conflict,
+                    conflict.other_footprint,
                 ),
-                kind: meeting.kind,
-                right_of_way: meeting.right_of_way,
+                kind: conflict.kind,
+                right_of_way: conflict.right_of_way,
                 part: self.part,
                 last_svo: *last_svo,
             };
             *last_svo = pair.svo();
             let [acceleration, expected] = self.policy.act(&pair);
             if acceleration < proposal.0 || proposal.1.is_none() {
-                let outlook = Outlook {
+                let prediction = Prediction {
                     other: number,
                     svo: *last_svo,
                     acceleration: expected,
                 };
-                proposal = (acceleration, Some(outlook));
+                proposal = (acceleration, Some(prediction));
             }
         }
         proposal
     }
 }
 
-fn party(vehicle: &Vehicle, exit: Point, conflict: f32, footprint: Footprint) -> Party {
-    Party {
+fn vehicle_state(
+    vehicle: &Vehicle,
+    exit: Point,
+    conflict: f32,
+    footprint: Footprint,
+) -> VehicleState {
+    VehicleState {
         pose: vehicle.pose,
         exit,
         speed: vehicle.speed,
@@ -180,10 +185,10 @@ fn party(vehicle: &Vehicle, exit: Point, conflict: f32, footprint: Footprint) ->
 
 /// Whether the two have yet to meet: in some zone neither has done with it. One that is ahead in a
 /// lane that they share from the start has been met once either has entered that lane: it leads.
-fn ahead(meeting: &Meeting, ego: &Vehicle, other: &Vehicle) -> bool {
-    meeting.zones().any(|zone| {
+fn ahead(conflict: &RouteConflict, ego: &Vehicle, other: &Vehicle) -> bool {
+    conflict.zones().any(|zone| {
         let (ego_end, other_end) = match zone.kind {
-            ConflictKind::Following => (meeting.ego_conflict, meeting.other_conflict),
+            ConflictKind::Following => (conflict.ego_conflict, conflict.other_conflict),
             _ => (zone.ego.to, zone.other.to),
         };
         ego.s < ego_end && other.s < other_end
@@ -191,30 +196,26 @@ fn ahead(meeting: &Meeting, ego: &Vehicle, other: &Vehicle) -> bool {
 }
 
 /// What all the others but number `except` are to the ego.
-fn surroundings<const N: usize>(
-    scene: &Scene<N>,
-    seen: &Observation<N>,
-    except: u8,
-) -> Surroundings {
-    let others = scene.meetings().iter().zip(seen.others.iter());
+fn traffic<const N: usize>(scene: &Scene<N>, seen: &Observation<N>, except: u8) -> TrafficContext {
+    let others = scene.conflicts().iter().zip(seen.others.iter());
     let around = (0_u8..).zip(others).filter(|&(number, _)| number != except);
-    let there = around.filter_map(|(_, (meeting, other))| {
+    let there = around.filter_map(|(_, (conflict, other))| {
         let Vehicle { s, speed, .. } = (*other)?;
-        Some(Around { meeting, s, speed })
+        Some(NearbyVehicle { conflict, s, speed })
     });
-    Surroundings::new(seen.ego.s, there)
+    TrafficContext::new(seen.ego.s, there)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::decision::Cause;
-    use crate::features::FeatureSet;
+    use crate::junction::route::Route;
+    use crate::junction::scene::Path;
     use crate::observation::Fault;
-    use crate::route::Route;
-    use crate::scene::Path;
-    use crate::weights::Perspective;
-    use crate::weights::testing::file;
+    use crate::policy::features::FeatureSet;
+    use crate::policy::weights::Perspective;
+    use crate::policy::weights::testing::file;
 
     fn route(points: &[(f32, f32)]) -> Route<4> {
         Route::new(points.iter().map(|&(x, y)| Point::new(x, y))).unwrap()
@@ -271,11 +272,11 @@ mod tests {
             ego: vehicle(0.0, 5.0),
             others: [None, Some(vehicle(20.0, 4.0)), None],
         };
-        let leader = surroundings(&scene(), &seen, 0).leader.unwrap();
+        let leader = traffic(&scene(), &seen, 0).leader.unwrap();
         assert_eq!(leader.speed, 4.0);
         assert!((leader.gap - 15.0).abs() < 0.1, "{leader:?}");
         assert!(!super::ahead(
-            &scene().meetings()[1],
+            &scene().conflicts()[1],
             &seen.ego,
             &vehicle(20.0, 4.0)
         ));
@@ -295,7 +296,7 @@ mod tests {
             (decision.acceleration, decision.cause),
             (FREE, Cause::Policy)
         );
-        assert_eq!(decision.outlook, None);
+        assert_eq!(decision.prediction, None);
         let blind = Observation {
             ego: vehicle(f32::NAN, 5.0),
             ..alone

@@ -19,12 +19,12 @@ pub struct Decision {
     /// Somebody did what the contract excludes, since the last decision.
     pub breach: Option<Breach>,
     /// What the policy thinks of the other that restricts the ego most, if it was asked.
-    pub outlook: Option<Outlook>,
+    pub prediction: Option<Prediction>,
 }
 
 /// What the policy thinks of one other.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outlook {
+pub struct Prediction {
     /// Number of the other.
     pub other: u8,
     /// The ego's social value orientation towards it in rad, in [0, π/2].

@@ -63,36 +63,27 @@
 #[cfg(test)]
 extern crate std;
 
-pub mod conflict;
 pub mod controller;
 pub mod decision;
-pub mod embedded;
-pub mod features;
 pub mod geometry;
-pub mod mlp;
+pub mod junction;
+pub mod kinematics;
 pub mod observation;
-pub mod pair;
 pub mod policy;
-pub mod route;
-pub mod scene;
+pub mod real;
+pub mod separation;
 pub mod shield;
-pub mod surroundings;
-pub mod svo;
-pub mod weights;
-pub mod zone;
 
-pub use conflict::ConflictKind;
 pub use controller::Controller;
-pub use decision::{Action, Breach, Cause, Decision, Intervention, Outlook, Reason};
-pub use features::FeatureSet;
+pub use decision::{Action, Breach, Cause, Decision, Intervention, Prediction, Reason};
 pub use geometry::{Footprint, Point, Pose};
-pub use mlp::Mlp;
+pub use junction::{
+    ConflictKind, Path, Route, RouteConflict, RouteError, Scene, SceneError, Span, Zone,
+};
 pub use observation::{Fault, Observation, Vehicle};
-pub use pair::{Crosser, Leader, Pair, Part, Party, RightOfWay};
-pub use policy::Policy;
-pub use route::{Route, RouteError};
-pub use scene::{Meeting, Path, Scene, SceneError};
+pub use policy::{
+    Crosser, FeatureSet, Leader, Mlp, NearbyVehicle, Pair, Part, Perspective, Policy, RightOfWay,
+    TrafficContext, VehicleState, Weights, WeightsError,
+};
+pub use real::Real;
 pub use shield::{Contract, ContractError, Plan, Shield};
-pub use surroundings::{Around, Surroundings};
-pub use weights::{Perspective, Weights, WeightsError};
-pub use zone::{Interval, Zone};

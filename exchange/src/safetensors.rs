@@ -72,7 +72,7 @@ mod tests {
 
     #[test]
     fn the_file_holds_every_number_and_what_they_are() {
-        let weights = Weights::parse(cede_controller::embedded::words()).unwrap();
+        let weights = Weights::parse(cede_controller::policy::embedded::words()).unwrap();
         let bytes = write(&weights).unwrap();
         let file = SafeTensors::deserialize(&bytes).unwrap();
         let numbers = |name: &str| -> Vec<f32> {

@@ -8,8 +8,8 @@ mod processor;
 #[path = "../tests/scenes/mod.rs"]
 mod scenes;
 
+use cede_controller::separation::OrientedBox;
 use cede_controller::{Footprint, Point, Pose};
-use cede_sim::OrientedBox;
 use cede_sim::batch::{Batch, Block, LANES, Library};
 use criterion::measurement::Measurement;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};

@@ -2,9 +2,8 @@
 //!
 //! `cargo run --release -p cede-sim --example compare -- ../shared/interaction [ENCOUNTERS] [SEED]`
 
-use cede_sim::data::{DataError, Distribution, Summary};
+use cede_data::{DataError, Dataset, Distribution, Encounter, Manoeuvre, Summary};
 use cede_sim::driver::Logistic;
-use cede_sim::{Dataset, Encounter, Manoeuvre};
 use std::path::Path;
 
 fn main() -> Result<(), DataError> {

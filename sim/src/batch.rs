@@ -7,7 +7,7 @@
 //!
 //! ```no_run
 //! # use cede_sim::batch::{Batch, LANES, Library};
-//! # fn f(encounters: &[cede_sim::Encounter]) -> Result<(), cede_sim::batch::LibraryError> {
+//! # fn f(encounters: &[cede_data::Encounter]) -> Result<(), cede_sim::batch::LibraryError> {
 //! let library = Library::new(encounters, cede_controller::Footprint::PAPER)?;
 //! let mut batch = Batch::<2>::new(&library, 4096, 7);
 //! batch.for_each(|library, block| {

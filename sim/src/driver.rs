@@ -27,17 +27,9 @@ pub use policy_alone::PolicyAlone;
 pub use replay::Replay;
 pub use shielded::Shielded;
 
-use crate::encounter::{Encounter, Participant};
 use cede_controller::Cause;
-
-/// State of a vehicle along its route.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct State {
-    /// Arc length in metres.
-    pub s: f32,
-    /// Speed in m/s, never negative.
-    pub v: f32,
-}
+use cede_controller::kinematics::State;
+use cede_data::encounter::{Encounter, Participant};
 
 /// What a driver sees when it decides.
 #[derive(Clone, Copy, Debug)]

@@ -1,10 +1,10 @@
 //! One episode: drivers take over the two judged vehicles from their recorded initial states.
 
-use crate::driver::{Driver, State, View};
-use crate::encounter::{Encounter, Role};
-use crate::kinematics::{advance, clamp_acceleration};
-use crate::overlap::OrientedBox;
+use crate::driver::{Driver, View};
+use cede_controller::kinematics::{State, advance, clamp_acceleration};
+use cede_controller::separation::OrientedBox;
 use cede_controller::{Cause, Footprint};
+use cede_data::encounter::{Encounter, Role};
 
 /// When an episode is over, if neither a collision nor a time-out ends it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

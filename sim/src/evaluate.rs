@@ -12,9 +12,9 @@ pub use row::{Interval, Label, Row};
 pub use selection::{Round, Selection, UnknownSelection};
 
 use crate::driver::DriverFactory;
-use crate::encounter::{Encounter, EncounterId, Role};
 use crate::episode::{Episode, Until};
 use crate::metrics::Measures;
+use cede_data::encounter::{Encounter, EncounterId, Role};
 use rayon::prelude::*;
 
 /// Who is under test.

@@ -1,9 +1,10 @@
 //! Hand-made encounters for unit tests.
 
-use crate::encounter::{
-    Encounter, EncounterId, Manoeuvre, Participant, Role, STEP, Sample, SimRoute,
-};
+use cede_controller::kinematics::STEP;
 use cede_controller::{ConflictKind, Footprint, Point};
+use cede_data::encounter::{
+    Encounter, EncounterId, Manoeuvre, Participant, Role, Sample, SimRoute,
+};
 
 /// The left-turner drives east, the other north; their routes cross at the origin, at right angles.
 /// Each starts `distance` m before its conflict point (5 m before the crossing) and is recorded at

@@ -7,8 +7,9 @@ mod ttc;
 pub use svo::{recorded_states, svo_series};
 pub use ttc::HORIZON as TTC_HORIZON;
 
-use crate::encounter::{Encounter, Role, STEP};
 use crate::episode::{Action, End, Episode};
+use cede_controller::kinematics::STEP;
+use cede_data::encounter::{Encounter, Role};
 
 /// Horizons of the position error in seconds.
 pub const HORIZONS: [u32; 3] = [1, 3, 5];

@@ -1,6 +1,6 @@
 //! Properties of a policy as a readable file: what the verifier proves and training can aim at.
 
-use cede_controller::{ConflictKind, Footprint, Pair, Part, Party, Point, Pose, RightOfWay};
+use cede_controller::{ConflictKind, Footprint, Pair, Part, Point, Pose, RightOfWay, VehicleState};
 use serde::{Deserialize, Serialize};
 
 /// Ego's metres to its conflict point and speed in m/s, then the other's.
@@ -21,7 +21,7 @@ impl Setting {
     /// The pair of vehicles at a place (rounded to `f32`), nobody around them, as a left-turner sees it.
     #[must_use]
     pub fn pair(&self, [d, v, other_d, other_v]: Place) -> Pair {
-        let party = |distance: f64, speed: f64, turn: f32| Party {
+        let vehicle_state = |distance: f64, speed: f64, turn: f32| VehicleState {
             pose: Pose {
                 position: Point::new(0.0, 0.0),
                 direction: Point::new(1.0, 0.0),
@@ -35,8 +35,8 @@ impl Setting {
             crosser: None,
         };
         Pair {
-            ego: party(d, v, self.turns[0]),
-            other: party(other_d, other_v, self.turns[1]),
+            ego: vehicle_state(d, v, self.turns[0]),
+            other: vehicle_state(other_d, other_v, self.turns[1]),
             kind: self.kind,
             right_of_way: self.right_of_way,
             part: Part::Left,

@@ -1,9 +1,9 @@
 //! How much of what good drivers do the shield would allow.
 
-use crate::encounter::{Encounter, Participant, Role, Sample};
 use cede_controller::{
     ConflictKind, Contract, ContractError, Footprint, Observation, Path, Scene, Shield, Vehicle,
 };
+use cede_data::encounter::{Encounter, Participant, Role, Sample};
 use rayon::prelude::*;
 
 /// Recorded steps of one role in one kind of encounter.

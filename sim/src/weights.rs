@@ -1,6 +1,7 @@
 //! Weights files from disk, as policies that live as long as the program.
 
-use cede_controller::{Policy, WeightsError, weights};
+use cede_controller::policy::weights;
+use cede_controller::{Policy, WeightsError};
 use std::path::{Path, PathBuf};
 
 /// A weights file cannot be used.
@@ -60,7 +61,7 @@ pub fn keep(words: &[u32]) -> Result<Policy<'static>, WeightsError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cede_controller::weights::Draft;
+    use cede_controller::policy::weights::Draft;
     use cede_controller::{FeatureSet, Mlp, Perspective};
 
     fn file() -> Vec<u32> {

@@ -8,9 +8,10 @@
 
 mod scenes;
 
+use cede_controller::separation::OrientedBox;
 use cede_controller::{Footprint, Point, Pose};
+use cede_sim::Judge;
 use cede_sim::batch::{Block, LANES, Library};
-use cede_sim::{Judge, OrientedBox};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 

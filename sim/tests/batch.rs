@@ -3,13 +3,14 @@
 mod scenes;
 
 use cede_controller::Footprint;
-use cede_controller::svo::svo;
+use cede_controller::kinematics::{State, advance, clamp_acceleration};
+use cede_controller::policy::svo::svo;
+use cede_controller::separation::OrientedBox;
+use cede_data::{Dataset, Encounter, Role};
 use cede_sim::batch::{Batch, Block, LANES, Library, LibraryError, Outcome};
 use cede_sim::episode::{End, Episode};
 use cede_sim::reward::{COLLISION, EpisodeLength, svo_deviation};
-use cede_sim::{
-    Dataset, Driver, Encounter, OrientedBox, Role, State, View, advance, clamp_acceleration,
-};
+use cede_sim::{Driver, View};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::collections::HashSet;

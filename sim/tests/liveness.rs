@@ -1,8 +1,9 @@
 //! A shielded vehicle among replayed humans gets through, and soon after they have.
 
+use cede_controller::kinematics::{State, advance};
 use cede_controller::{Cause, Contract, Fault, Observation, Shield, Vehicle};
+use cede_data::{Dataset, Encounter};
 use cede_sim::driver::scene;
-use cede_sim::{Dataset, Encounter, State, advance};
 use rayon::prelude::*;
 use std::path::PathBuf;
 
@@ -17,12 +18,12 @@ fn delay(encounter: &Encounter, ego: usize) -> Option<u32> {
         &encounter.participants[1 - ego],
     );
     let scene = scene(encounter, ego)?;
-    let zones: Vec<_> = scene.meetings()[0].zones().copied().collect();
+    let zones: Vec<_> = scene.conflicts()[0].zones().copied().collect();
     let mut shield = Shield::<1>::new(Contract::WORST_CASE).unwrap();
     let mut state = me.record.first().map(|r| State { s: r.s, v: r.v })?;
     let mut free = 0;
     for step in 0..10_000 {
-        let vehicle = |s: f32, speed: f32, route: &cede_sim::SimRoute| Vehicle {
+        let vehicle = |s: f32, speed: f32, route: &cede_data::SimRoute| Vehicle {
             s,
             speed,
             pose: route.pose(s),

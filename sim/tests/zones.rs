@@ -5,9 +5,9 @@
 //! is then exact in the other's arc length, and asked every few centimetres of
 //! the ego's.
 
-use cede_controller::zone::FAR;
-use cede_controller::{Footprint, Interval, Path, Point, Route, Scene, Zone};
-use cede_sim::{Dataset, SimRoute};
+use cede_controller::junction::zone::FAR;
+use cede_controller::{Footprint, Path, Point, Route, Scene, Span, Zone};
+use cede_data::{Dataset, SimRoute};
 use geo::{ConvexHull, Coord, Intersects, MultiPoint, Polygon};
 use proptest::prelude::*;
 use rayon::prelude::*;
@@ -62,7 +62,7 @@ fn occupied<const P: usize>(route: &Route<P>, sweep: &[Polygon<f64>], step: f32)
 }
 
 /// How much of the zones' intervals on a route is more than `step` from anything occupied, in metres.
-fn excess(intervals: &[Interval], occupied: &[f32], length: f32, step: f32) -> f32 {
+fn excess(intervals: &[Span], occupied: &[f32], length: f32, step: f32) -> f32 {
     let count = (length / step) as usize;
     let needless = |s: f32| {
         let after = occupied.partition_point(|&o| o < s);
@@ -85,11 +85,11 @@ fn check<const P: usize>(ego: &Route<P>, other: &Route<P>, step: f32) -> f32 {
         footprint: PAPER,
     };
     let scene = Scene::<1>::new(path(ego), &[path(other)]).unwrap();
-    let zones: Vec<Zone> = scene.meetings()[0].zones().copied().collect();
+    let zones: Vec<Zone> = scene.conflicts()[0].zones().copied().collect();
     let mut worst = 0.0_f32;
     for (route, against, mine) in [(ego, other, true), (other, ego, false)] {
         let side = |z: &Zone| if mine { z.ego } else { z.other };
-        let intervals: Vec<Interval> = zones.iter().map(side).collect();
+        let intervals: Vec<Span> = zones.iter().map(side).collect();
         let occupied = occupied(route, &sweep(against), step);
         for s in &occupied {
             assert!(
@@ -98,7 +98,7 @@ fn check<const P: usize>(ego: &Route<P>, other: &Route<P>, step: f32) -> f32 {
             );
         }
         // A zone that goes on past the end of either route does so on purpose.
-        let ends = |z: &Interval| Interval {
+        let ends = |z: &Span| Span {
             from: if z.from == -FAR {
                 occupied.first().copied().unwrap_or(z.from)
             } else {
@@ -110,7 +110,7 @@ fn check<const P: usize>(ego: &Route<P>, other: &Route<P>, step: f32) -> f32 {
                 z.to
             },
         };
-        let bounded: Vec<Interval> = intervals.iter().map(ends).collect();
+        let bounded: Vec<Span> = intervals.iter().map(ends).collect();
         worst = worst.max(excess(&bounded, &occupied, route.length(), step));
     }
     worst
@@ -172,7 +172,7 @@ proptest! {
         let cover = |pose: cede_controller::Pose| hull(corners(pose.position, pose.direction));
         if cover(ego.pose(s)).intersects(&cover(other.pose(t))) {
             let inside = |z: &Zone| z.ego.contains(s) && z.other.contains(t) && z.lead.contains(s - t);
-            prop_assert!(scene.meetings()[0].zones().any(inside));
+            prop_assert!(scene.conflicts()[0].zones().any(inside));
         }
     }
 }
@@ -198,7 +198,7 @@ fn a_zone_that_is_too_small_is_noticed() {
         }],
     )
     .unwrap();
-    let zone = scene.meetings()[0].zones().next().unwrap().ego;
+    let zone = scene.conflicts()[0].zones().next().unwrap().ego;
     let occupied = occupied(&ego, &sweep(&other), 0.01);
     assert!(occupied.iter().any(|&s| !zone.contains(s)));
 }

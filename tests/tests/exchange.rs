@@ -1,9 +1,10 @@
 //! Exported policies do elsewhere what they do in the controller.
 
-use cede_controller::weights::Draft;
+use cede_controller::policy::weights::Draft;
 use cede_controller::{FeatureSet, Mlp, Pair, Part, Perspective, Policy, Weights};
+use cede_data::Dataset;
 use cede_exchange::onnx;
-use cede_sim::{Dataset, Sight};
+use cede_sim::ObservationModel;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::path::{Path, PathBuf};
@@ -17,14 +18,21 @@ const CLOSE: f64 = 1e-5;
 fn pairs() -> Vec<Pair> {
     let dataset = Dataset::synthetic(20, 3);
     let mut random = Pcg64::seed_from_u64(4);
-    let sights: Vec<_> = dataset.encounters.iter().map(Sight::new).collect();
-    let seen = sights.iter().flat_map(Sight::recorded).step_by(2);
+    let models: Vec<_> = dataset
+        .encounters
+        .iter()
+        .map(ObservationModel::new)
+        .collect();
+    let seen = models
+        .iter()
+        .flat_map(ObservationModel::recorded)
+        .step_by(2);
     let changed = seen.step_by(7).enumerate().map(|(i, mut pair)| {
         assert_eq!(pair.part, Part::Left);
         if i % 3 == 0 {
-            for party in [&mut pair.ego, &mut pair.other] {
-                party.distance *= random.random_range(1.0..100.0);
-                party.speed *= random.random_range(1.0..20.0);
+            for vehicle_state in [&mut pair.ego, &mut pair.other] {
+                vehicle_state.distance *= random.random_range(1.0..100.0);
+                vehicle_state.speed *= random.random_range(1.0..20.0);
             }
         }
         pair
@@ -34,7 +42,7 @@ fn pairs() -> Vec<Pair> {
 
 /// The embedded policy, and one with random numbers for each set of features.
 fn policies() -> Vec<Vec<u32>> {
-    let mut policies = vec![cede_controller::embedded::words().to_vec()];
+    let mut policies = vec![cede_controller::policy::embedded::words().to_vec()];
     let mut random = Pcg64::seed_from_u64(5);
     for (features, width) in FeatureSet::ALL.into_iter().zip([16, 64, 80, 128]) {
         let inputs = features.count();

@@ -1,9 +1,11 @@
 //! What is claimed of the embedded policy, and that the verifier finds fault with worse ones.
 
-use cede_controller::weights::Draft;
-use cede_controller::{Policy, Weights, embedded};
+use cede_controller::policy::embedded;
+use cede_controller::policy::weights::Draft;
+use cede_controller::{Policy, Weights};
+use cede_data::Dataset;
+use cede_sim::ObservationModel;
 use cede_sim::property::{Claim, Place, Properties, Setting, StateProperty};
-use cede_sim::{Dataset, Sight};
 use cede_train::run::{Algorithm, Lessons, Run};
 use cede_verify::policy::{Finding, Subject};
 use std::time::{Duration, Instant};
@@ -44,11 +46,15 @@ fn changed(change: impl Fn(usize, &mut [f32], &mut [f32])) -> Vec<u32> {
 /// A policy that has learned to drive a little, but nothing of what is claimed.
 fn unclaimed(seed: u64) -> Vec<u32> {
     let dataset = Dataset::synthetic(40, seed);
-    let sights: Vec<Sight<'_>> = dataset.encounters.iter().map(Sight::new).collect();
+    let models: Vec<ObservationModel<'_>> = dataset
+        .encounters
+        .iter()
+        .map(ObservationModel::new)
+        .collect();
     let lessons = Lessons {
         courses: Vec::new(),
-        own: sights.len(),
-        sights,
+        own: models.len(),
+        models,
         claims: Vec::new(),
     };
     let short = "updates = 60\nbatch = 32\nwidth = 32\nhorizon = 10\nlast_horizon = 10";
@@ -58,7 +64,7 @@ fn unclaimed(seed: u64) -> Vec<u32> {
         .unwrap();
     let mut run = Run::new(settings, &lessons, seed);
     while run.advance().is_some() {}
-    run.pilot().weights([0; 32]).unwrap()
+    run.view().weights([0; 32]).unwrap()
 }
 
 /// Whether the controller breaks the claim at the witness, when it is run there.

@@ -1,6 +1,6 @@
 //! The paper's protocol on recorded encounters: the simulator's own error, and the baselines.
 
-use cede_sim::Dataset;
+use cede_data::Dataset;
 use cede_sim::driver::Baseline;
 use cede_sim::episode::Until;
 use cede_sim::evaluate::{Label, Mode, Protocol, Row, Selection, evaluate};

@@ -7,7 +7,7 @@
 mod processor;
 
 use cede_train::learner::{Learner, Rates};
-use cede_train::matmul::{Into, Matrix, multiply};
+use cede_train::nn::matmul::{Into, Matrix, multiply};
 use cede_train::replay::Batch;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use processor::CpuTime;

@@ -1,6 +1,6 @@
 //! Closed intervals with outward rounding.
 
-use cede_controller::shield::Real;
+use cede_controller::Real;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A closed interval.

@@ -1,7 +1,7 @@
 //! Cede's own network, on a cache line's boundary as `include_weights!` puts it.
 
 use crate::{INPUTS, Layer, Run};
-use cede_controller::weights::{Aligned, Draft};
+use cede_controller::policy::weights::{Aligned, Draft};
 use cede_controller::{FeatureSet, Mlp, Perspective};
 
 /// Enough for the file of a network 128 wide: 17 words and two for each input lie around its parameters.

@@ -5,7 +5,7 @@ mod inspect;
 mod synthesize;
 
 use crate::failure::Failure;
-use cede_sim::Dataset;
+use cede_data::Dataset;
 use clap::Subcommand;
 
 /// What to do with the data.

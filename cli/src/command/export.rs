@@ -2,8 +2,8 @@
 
 use crate::drivers;
 use crate::failure::Failure;
+use cede_data::output;
 use cede_exchange::{onnx, safetensors};
-use cede_sim::output;
 use clap::ValueEnum;
 use std::path::PathBuf;
 

@@ -1,11 +1,12 @@
 //! `cede import`.
 
 use crate::failure::Failure;
-use cede_controller::features::LIMIT;
+use cede_controller::policy::features::LIMIT;
 use cede_controller::{FeatureSet, Perspective, Policy};
+use cede_data::output;
 use cede_exchange::description::{features_named, perspective_name, perspective_named};
 use cede_exchange::onnx::{self, ImportError, Told};
-use cede_sim::{output, weights};
+use cede_sim::weights;
 use std::path::PathBuf;
 
 /// The graph: Sub, Add, Mul, Div and one Clip to ± a number (all optional), one to three hidden layers of at most

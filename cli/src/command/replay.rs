@@ -7,9 +7,9 @@ use crate::failure::Failure;
 use crate::judge::{ContractName, ShieldName};
 use crate::report::{Report, command};
 use cede_controller::Contract;
+use cede_data::{Dataset, Encounter};
 use cede_sim::episode::Until;
 use cede_sim::evaluate::{Label, Mode, Protocol, Row, evaluate};
-use cede_sim::{Dataset, Encounter};
 use std::path::PathBuf;
 use std::str::FromStr;
 

@@ -5,14 +5,13 @@ use crate::interrupt;
 use crate::settings::{checked, quoted, with};
 use crate::source::Source;
 use crate::training::{Identity, Training};
-use cede_sim::data::Split;
+use cede_data::{Dataset, Encounter, Split, output};
 use cede_sim::property::{Properties, StateProperty};
-use cede_sim::{Dataset, Encounter, output};
-use cede_train::curve::{Panel, Point};
-use cede_train::episodes::Course;
-use cede_train::judge::judge;
-use cede_train::log::Log;
-use cede_train::provenance::{Provenance, data_hash};
+use cede_train::driving::episodes::Course;
+use cede_train::driving::judge::judge;
+use cede_train::run::curve::{Panel, Point};
+use cede_train::run::log::Log;
+use cede_train::run::provenance::{Provenance, data_hash};
 use cede_train::run::{Algorithm, Lessons, Report, Run, Settings};
 use clap::builder::PossibleValue;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -260,7 +259,7 @@ impl Args {
     }
 
     fn write(&self, run: &Run<'_>, provenance: &Provenance) -> Result<(), Failure> {
-        let words = run.pilot().weights(provenance.hash()).map_err(|error| {
+        let words = run.view().weights(provenance.hash()).map_err(|error| {
             let problem = format!("the trained network is not usable: {error}");
             Failure::input(problem, "lower the learning rates, or change the width")
         })?;
@@ -348,7 +347,7 @@ impl<'l> Bar<'l> {
         }
         if self.judged.is_none_or(|last| last.elapsed() > JUDGE_EVERY) {
             let courses = &self.lessons.courses;
-            let score = judge(&courses[..courses.len().min(JUDGED)], run.pilot());
+            let score = judge(&courses[..courses.len().min(JUDGED)], run.view());
             self.score = format!(
                 "priority accuracy {:.0} %, length error {:.2}",
                 100.0 * score.priority_accuracy,

@@ -1,8 +1,7 @@
 //! Which encounters the report replays.
 
 use cede_controller::ConflictKind;
-use cede_sim::data::Split;
-use cede_sim::{Dataset, Encounter, Role};
+use cede_data::{Dataset, Encounter, Role, Split};
 
 /// The paper's case studies at its site EP0: file, left-turner, other.
 const PAPER: [(u16, u32, u32); 3] = [(7, 25, 26), (7, 49, 48), (7, 57, 61)];

@@ -4,13 +4,14 @@ use super::sweep::Panel;
 use super::why::{Class, words};
 use crate::table::PAPER;
 use cede_controller::ConflictKind;
-use cede_sim::data::lanelet::{self, LineKind};
+use cede_controller::kinematics::State;
+use cede_data::lanelet::LineKind;
+use cede_data::{Encounter, EncounterId, Participant, Role, lanelet};
 use cede_sim::episode::{End, Episode};
 use cede_sim::evaluate::{Drive, Row};
 use cede_sim::metrics::{recorded_states, svo_series};
-use cede_sim::{Encounter, EncounterId, Participant, Role, State};
-use cede_train::curve::Point;
-use cede_train::judge::Score;
+use cede_train::driving::judge::Score;
+use cede_train::run::curve::Point;
 use serde::Serialize;
 use std::collections::HashSet;
 

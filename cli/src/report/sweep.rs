@@ -1,7 +1,7 @@
 //! What the shield would have allowed recorded drivers, over two numbers of the contract.
 
 use cede_controller::ConflictKind;
-use cede_sim::Role;
+use cede_data::Role;
 use cede_sim::transparency::Swept;
 use serde::Serialize;
 

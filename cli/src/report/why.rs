@@ -1,7 +1,7 @@
 //! Why the shield acted, for people.
 
 use cede_controller::{Cause, Reason};
-use cede_sim::Role;
+use cede_data::Role;
 use serde::Serialize;
 
 /// What made the shield act, in classes that can be counted.

@@ -2,12 +2,12 @@
 
 use super::contract::Contract;
 use super::precedence::Claims;
-use super::real::Real;
 use super::rules::Rules;
+use crate::junction::scene::{MAX_OTHERS, Scene};
+use crate::junction::zone::{FAR, MAX_ZONES, Zone};
 use crate::observation::{Observation, Vehicle};
-use crate::pair::RightOfWay;
-use crate::scene::{MAX_OTHERS, Scene};
-use crate::zone::{FAR, MAX_ZONES, Zone};
+use crate::policy::pair::RightOfWay;
+use crate::real::Real;
 use heapless::Vec;
 
 const CAPACITY: usize = MAX_OTHERS * MAX_ZONES;
@@ -75,10 +75,10 @@ impl Hazards {
     ) {
         // From where the first zone that precedence opens begins to where the last one ends.
         let mut open = [FAR, -FAR];
-        let pairs = scene.meetings().iter().zip(seen.others.iter());
-        for (number, (meeting, other)) in (0_u8..).zip(pairs) {
+        let pairs = scene.conflicts().iter().zip(seen.others.iter());
+        for (number, (conflict, other)) in (0_u8..).zip(pairs) {
             let Some(other) = other else { continue };
-            for (index, zone) in (0_u8..).zip(meeting.zones()) {
+            for (index, zone) in (0_u8..).zip(conflict.zones()) {
                 if let Some(hazard) = hazard::<R>(contract, zone, &seen.ego, other) {
                     let vehicles = (&seen.ego, other);
                     if claims.has(number, index)
@@ -107,8 +107,8 @@ impl Hazards {
     /// It may still come to rest there behind those who share its lane.
     fn keep_clear<const N: usize>(&mut self, scene: &Scene<N>, [from, to]: [f32; 2]) {
         for hazard in &mut self.sorted {
-            let meeting = scene.meetings().get(usize::from(hazard.other));
-            let yields = meeting.is_some_and(|m| m.right_of_way == RightOfWay::Other);
+            let conflict = scene.conflicts().get(usize::from(hazard.other));
+            let yields = conflict.is_some_and(|m| m.right_of_way == RightOfWay::Other);
             let crosses = matches!(hazard.passage, Passage::Before { .. });
             if crosses && !yields && (from..to).contains(&hazard.limit) {
                 hazard.limit = from;

@@ -5,7 +5,7 @@
 
 use super::contract::Contract;
 use super::reach::Reach;
-use super::real::Real;
+use crate::real::Real;
 
 /// Bounds on the ego until the first command of a plan is certainly in effect.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -12,7 +12,6 @@ mod memory;
 mod plan;
 mod precedence;
 pub mod reach;
-pub mod real;
 pub mod rules;
 #[cfg(test)]
 mod tests;
@@ -21,12 +20,11 @@ mod waiting;
 
 pub use contract::{Contract, ContractError};
 pub use plan::Plan;
-pub use real::Real;
 pub use rules::{Rules, Sound};
 
 use crate::decision::{Action, Cause, Decision, Intervention, Reason};
+use crate::junction::scene::Scene;
 use crate::observation::{Fault, Observation};
-use crate::scene::Scene;
 use core::marker::PhantomData;
 use hazard::{Hazards, Passage};
 use memory::Memory;
@@ -101,7 +99,7 @@ impl<const N: usize, R: Rules> Shield<N, R> {
         proposal: f32,
     ) -> Decision {
         self.memory.tick();
-        let decision = match &observation.checked(scene.meetings().len()) {
+        let decision = match &observation.checked(scene.conflicts().len()) {
             Ok(seen) => self.judge(scene, seen, proposal),
             Err(fault) => self.blind(*fault),
         };
@@ -125,7 +123,7 @@ impl<const N: usize, R: Rules> Shield<N, R> {
         if !(previous.is_finite() && acceleration.is_finite()) {
             return Err(Fault::Proposal);
         }
-        let seen = observation.checked(scene.meetings().len())?;
+        let seen = observation.checked(scene.conflicts().len())?;
         let mut hazards = Hazards::new();
         hazards.add::<N, R>(&self.contract, scene, &seen, Claims::default());
         let speed = seen.ego.speed;
@@ -143,7 +141,7 @@ impl<const N: usize, R: Rules> Shield<N, R> {
             cause: Cause::Fallback(fault),
             margin: 0.0,
             breach: None,
-            outlook: None,
+            prediction: None,
         }
     }
 
@@ -199,7 +197,7 @@ impl<const N: usize, R: Rules> Shield<N, R> {
             cause,
             margin: found.map_or(verdict.margin, |(_, verified)| verified.margin),
             breach,
-            outlook: None,
+            prediction: None,
         }
     }
 

@@ -5,11 +5,11 @@
 
 use super::contract::{Contract, Precedence};
 use super::rules::Rules;
-use super::waiting::{Rest, Stay};
+use super::waiting::{RestState, Standstill};
+use crate::junction::scene::{MAX_OTHERS, RouteConflict, Scene};
+use crate::junction::zone::{Span, Zone};
 use crate::observation::{Observation, Vehicle};
-use crate::pair::RightOfWay;
-use crate::scene::{MAX_OTHERS, Meeting, Scene};
-use crate::zone::{Interval, Zone};
+use crate::policy::pair::RightOfWay;
 
 /// The zones in which the ego has precedence, one bit each.
 type Zones = u8;
@@ -30,22 +30,22 @@ impl Claims {
 
 /// What the ego remembers of how it and each other came to the zones that they share.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Precedences<const N: usize>([Pair; N]);
+pub(crate) struct Precedences<const N: usize>([PairMemory; N]);
 
 /// The ego and one other.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Pair {
-    ego: Party,
-    other: Party,
+struct PairMemory {
+    ego: Arrival,
+    other: Arrival,
     turn: Turn,
 }
 
 /// One of the two.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Party {
+struct Arrival {
     /// Periods since it arrived, the first included, as long as the two have not both arrived; 0 before.
     arrived: u16,
-    stay: Stay,
+    standstill: Standstill,
 }
 
 /// Whose turn it is.
@@ -64,7 +64,7 @@ enum Turn {
 
 impl<const N: usize> Precedences<N> {
     pub(crate) fn new() -> Self {
-        Self([Pair::default(); N])
+        Self([PairMemory::default(); N])
     }
 
     /// One period later: notes who has arrived and who rests, and says over whom the ego has precedence.
@@ -76,23 +76,23 @@ impl<const N: usize> Precedences<N> {
         seen: &Observation<N>,
     ) -> Claims {
         let mut claims = Claims::default();
-        let others = scene.meetings().iter().zip(seen.others.iter());
+        let others = scene.conflicts().iter().zip(seen.others.iter());
         let pairs = claims.0.iter_mut().zip(self.0.iter_mut());
-        for ((meeting, other), (claims, pair)) in others.zip(pairs) {
+        for ((conflict, other), (claims, pair)) in others.zip(pairs) {
             let Some(other) = other else {
                 pair.lose();
                 continue;
             };
             pair.tick();
             pair.ego
-                .note(contract, rule, entry(meeting, |z| z.ego), &seen.ego);
+                .note(contract, rule, entry(conflict, |z| z.ego), &seen.ego);
             pair.other
-                .note(contract, rule, entry(meeting, |z| z.other), other);
-            pair.pass::<R>(contract, rule, meeting.right_of_way);
-            *claims = pair.claims(rule, meeting.right_of_way);
+                .note(contract, rule, entry(conflict, |z| z.other), other);
+            pair.pass::<R>(contract, rule, conflict.right_of_way);
+            *claims = pair.claims(rule, conflict.right_of_way);
             if *claims != ALL {
-                pair.hold::<R>(contract, meeting, &seen.ego);
-                *claims = pair.claims(rule, meeting.right_of_way);
+                pair.hold::<R>(contract, conflict, &seen.ego);
+                *claims = pair.claims(rule, conflict.right_of_way);
             }
         }
         claims
@@ -102,9 +102,9 @@ impl<const N: usize> Precedences<N> {
     pub(crate) fn blind<R: Rules>(&mut self, contract: &Contract, rule: Precedence) {
         for pair in &mut self.0 {
             pair.tick();
-            for party in [&mut pair.ego, &mut pair.other] {
-                if party.arrived > 0 {
-                    party.stay.note(Rest::Perhaps);
+            for arrival in [&mut pair.ego, &mut pair.other] {
+                if arrival.arrived > 0 {
+                    arrival.standstill.note(RestState::Perhaps);
                 }
             }
             pair.pass::<R>(contract, rule, RightOfWay::Unsettled);
@@ -112,7 +112,7 @@ impl<const N: usize> Precedences<N> {
     }
 }
 
-impl Party {
+impl Arrival {
     fn note(
         &mut self,
         contract: &Contract,
@@ -124,16 +124,19 @@ impl Party {
         if self.arrived == 0 && within(rule.distance) {
             self.arrived = 1;
         }
-        self.stay.note(match Rest::of(contract, vehicle) {
-            _ if self.arrived == 0 => Rest::No,
-            // It has to have arrived for the other's shield as well.
-            Rest::Surely if !within(rule.distance - 2.0 * contract.position_error) => Rest::Perhaps,
-            rest => rest,
-        });
+        self.standstill
+            .note(match RestState::of(contract, vehicle) {
+                _ if self.arrived == 0 => RestState::No,
+                // It has to have arrived for the other's shield as well.
+                RestState::Surely if !within(rule.distance - 2.0 * contract.position_error) => {
+                    RestState::Perhaps
+                }
+                rest => rest,
+            });
     }
 }
 
-impl Pair {
+impl PairMemory {
     /// One period has passed.
     fn tick(&mut self) {
         let (ego, other) = (&mut self.ego.arrived, &mut self.other.arrived);
@@ -146,7 +149,7 @@ impl Pair {
 
     /// The other is not to be seen.
     fn lose(&mut self) {
-        self.other = Party::default();
+        self.other = Arrival::default();
         if matches!(self.turn, Turn::Ego | Turn::Inside(_)) {
             self.turn = Turn::Past;
         }
@@ -165,16 +168,16 @@ impl Pair {
 
     /// Whoever stands in a zone while both rest has precedence there until it has left: whosesoever turn it is, the other
     /// sees it stand there, and has no plan left that counts on the zone.
-    fn hold<R: Rules>(&mut self, contract: &Contract, meeting: &Meeting, ego: &Vehicle) {
+    fn hold<R: Rules>(&mut self, contract: &Contract, conflict: &RouteConflict, ego: &Vehicle) {
         let periods = R::grace(contract);
-        if self.ego.stay.surely.min(self.other.stay.surely) < periods {
+        if self.ego.standstill.surely.min(self.other.standstill.surely) < periods {
             return;
         }
         // It has been there for all these periods, however it crept.
         let slow = contract.rest_speed() + 2.0 * contract.speed_error;
         let crept = f32::from(periods) * contract.period * slow + contract.position_error;
         let inside = |zone: &Zone| ego.s - crept > zone.ego.from && ego.s < zone.ego.to;
-        let zones = (0_u32..).zip(meeting.zones());
+        let zones = (0_u32..).zip(conflict.zones());
         let zones = zones.fold(0, |zones, (number, zone)| {
             zones | Zones::from(inside(zone) && !zone.is_lane()) << number
         });
@@ -186,7 +189,7 @@ impl Pair {
     /// Passes the turn on. While both rest, a turn begins after `patience` periods, twice, four times, … as many, and its
     /// first few periods are nobody's; as soon as one of them moves, the turn stays whose it is.
     fn pass<R: Rules>(&mut self, contract: &Contract, rule: Precedence, right_of_way: RightOfWay) {
-        let (ego, other) = (self.ego.stay, self.other.stay);
+        let (ego, other) = (self.ego.standstill, self.other.standstill);
         let perhaps = ego.perhaps.min(other.perhaps);
         let surely = ego.surely.min(other.surely);
         let patiences = perhaps.checked_div(rule.patience).unwrap_or(0);
@@ -209,9 +212,9 @@ impl Pair {
     /// Whether the ego comes before the other while both rest, so that the other knows it, too: by the right of
     /// way; without one, by how much earlier it arrived and came to rest, both together.
     fn first(&self, right_of_way: RightOfWay) -> Option<bool> {
-        let earlier = |one: Party, two: Party| {
-            let [a, b] = [one, two].map(|party| i32::from(party.arrived));
-            a - b + i32::from(one.stay.surely) - i32::from(two.stay.perhaps) > 1
+        let earlier = |one: Arrival, two: Arrival| {
+            let [a, b] = [one, two].map(|arrival| i32::from(arrival.arrived));
+            a - b + i32::from(one.standstill.surely) - i32::from(two.standstill.perhaps) > 1
         };
         match right_of_way {
             RightOfWay::Ego => Some(true),
@@ -225,8 +228,8 @@ impl Pair {
 }
 
 /// Where a vehicle comes to the first zone that it shares with the other.
-fn entry(meeting: &Meeting, side: fn(&Zone) -> Interval) -> Option<f32> {
-    meeting
+fn entry(conflict: &RouteConflict, side: fn(&Zone) -> Span) -> Option<f32> {
+    conflict
         .zones()
         .map(|zone| side(zone).from)
         .fold(None, |first, from| match first {

@@ -3,7 +3,7 @@
 //! Every function is one expression without branches, generic over [`Real`], and total: finite
 //! for finite speeds and times that are not negative and accelerations above 0.
 
-use super::real::Real;
+use crate::real::Real;
 
 /// A distance travelled (m) and the speed (m/s) at its end.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,7 +5,7 @@ use super::margin::{self, Departure};
 use super::plan::Plan;
 use super::reach::Reach;
 use super::waiting;
-use crate::zone::Zone;
+use crate::junction::zone::Zone;
 
 /// The rules, one method each. [`Sound`] is the only implementation that drives.
 ///

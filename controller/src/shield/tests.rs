@@ -2,11 +2,11 @@
 
 use super::*;
 use crate::geometry::{Footprint, Point, Pose};
+use crate::junction::route::Route;
+use crate::junction::scene::Path;
+use crate::junction::zone::Span;
 use crate::observation::Vehicle;
-use crate::pair::RightOfWay;
-use crate::route::Route;
-use crate::scene::Path;
-use crate::zone::Interval;
+use crate::policy::pair::RightOfWay;
 use proptest::prelude::*;
 use std::format;
 use std::string::ToString;
@@ -243,7 +243,7 @@ fn behind_a_leader_the_ego_can_always_stop() {
 fn precedence_into_a_lane_is_granted_only_where_the_other_cannot_enter_ahead() {
     let contract = Contract::ALL_WAY_STOP;
     let scene = Scene::<2>::new(path(&east()), &[path(&ramp())]).unwrap();
-    let zone = *scene.meetings()[0].zones().next().unwrap();
+    let zone = *scene.conflicts()[0].zones().next().unwrap();
     let mut claims = Claims::default();
     claims.0[0] = u8::MAX;
     let passage = |ego: f32| {
@@ -263,7 +263,7 @@ fn precedence_into_a_lane_is_granted_only_where_the_other_cannot_enter_ahead() {
 #[test]
 fn an_ego_with_precedence_may_wait_in_the_zone() {
     let scene = Scene::<2>::new(path(&east()), &[path(&north())]).unwrap();
-    let zone = *scene.meetings()[0].zones().next().unwrap();
+    let zone = *scene.conflicts()[0].zones().next().unwrap();
     let inside = seen(
         vehicle(zone.ego.from + 2.0, 0.0),
         vehicle(zone.other.from - 0.1, 0.0),
@@ -283,7 +283,7 @@ fn stops_for(right_of_way: RightOfWay) -> (f32, [f32; 2]) {
     let others = [north(), route(&[(2.0, -60.0), (2.0, 60.0)])];
     let mut scene = Scene::<2>::new(path(&east()), &others.each_ref().map(path)).unwrap();
     scene.set_right_of_way(1, right_of_way);
-    let zone = |i: usize| *scene.meetings()[i].zones().next().unwrap();
+    let zone = |i: usize| *scene.conflicts()[i].zones().next().unwrap();
     let ego = vehicle(zone(0).ego.from - 5.0, 0.0);
     let others = [0, 1].map(|i| Some(vehicle(zone(i).other.from - 0.1, 0.0)));
     let mut claims = Claims::default();
@@ -309,7 +309,7 @@ fn an_ego_with_precedence_holds_up_others_only_for_whom_it_yields_to() {
 /// come to rest ahead of where the ego would enter.
 fn gains_at_a_merge<R: Rules>(ego: Vehicle, other: Vehicle, worse: Vehicle, a: f32) -> bool {
     let scene = Scene::<2>::new(path(&east()), &[path(&ramp())]).unwrap();
-    let zone = *scene.meetings()[0].zones().next().unwrap();
+    let zone = *scene.conflicts()[0].zones().next().unwrap();
     assert!(zone.is_lane());
     let rests = worse.s + margin::earliest_rest(&WORST, worse.speed) + zone.lead.from;
     let [before, after] = [other, worse].map(|other| margin_by::<R>(&scene, ego, other, a));
@@ -333,15 +333,15 @@ fn a_shield_that_fears_the_slow_more_is_found_out_at_a_merge() {
 
 /// The scene and the contract in units of length that are `factor` times as long.
 fn scaled(mut scene: Scene<2>, mut contract: Contract, factor: f32) -> (Scene<2>, Contract) {
-    let far = crate::zone::FAR;
+    let far = crate::junction::zone::FAR;
     let scale = |x: &mut f32| {
         if x.abs() < far {
             *x *= factor;
         }
     };
-    for meeting in scene.meetings_mut() {
-        for zone in meeting.zones.iter_mut().flatten() {
-            let interval = |i: &mut Interval| {
+    for conflict in scene.meetings_mut() {
+        for zone in conflict.zones.iter_mut().flatten() {
+            let interval = |i: &mut Span| {
                 scale(&mut i.from);
                 scale(&mut i.to);
             };
@@ -507,7 +507,7 @@ proptest! {
         s in 30.0_f32..70.0, v in 0.0_f32..15.0, t in 30.0_f32..70.0, w in 0.0_f32..15.0,
     ) {
         let scene = crossing();
-        let zone = *scene.meetings()[0].zones().next().unwrap();
+        let zone = *scene.conflicts()[0].zones().next().unwrap();
         let goes = |s: f32, v: f32, t: f32, w: f32| {
             let departure = margin::departure(&WORST, v, [0.0; 2], 3.0);
             let (clears, _) = margin::clearing(&WORST, departure.least, zone.ego.to - s);
@@ -527,7 +527,7 @@ proptest! {
         let scene = crossing();
         let ego = vehicle(ego_s, ego_v);
         let base = margin(&scene, ego, vehicle(other_s, other_v), a);
-        let end = scene.meetings()[0].zones().next().unwrap().other.to - 0.01;
+        let end = scene.conflicts()[0].zones().next().unwrap().other.to - 0.01;
         let near = if other_s + nearer < end { other_s + nearer } else { end };
         prop_assert!(margin(&scene, ego, vehicle(near, other_v), a) <= base + 1e-4);
         prop_assert!(margin(&scene, ego, vehicle(other_s, other_v + faster), a) <= base + 1e-4);

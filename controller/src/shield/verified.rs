@@ -4,9 +4,9 @@ use super::contract::Contract;
 use super::hazard::{Hazard, Hazards, Passage};
 use super::margin::{self, Departure};
 use super::plan::Plan;
-use super::real::Real;
 use super::rules::Rules;
-use crate::zone::FAR;
+use crate::junction::zone::FAR;
+use crate::real::Real;
 
 /// Clearing that takes longer than this (s) is not planned.
 const HORIZON: f32 = 60.0;

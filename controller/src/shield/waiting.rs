@@ -5,7 +5,7 @@ use crate::observation::Vehicle;
 
 /// Whether a vehicle is at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Rest {
+pub(super) enum RestState {
     /// Nobody takes it for one at rest.
     No,
     /// Somebody may, who sees it otherwise.
@@ -14,7 +14,7 @@ pub(super) enum Rest {
     Surely,
 }
 
-impl Rest {
+impl RestState {
     /// What `vehicle` does; to be at rest is to have [`Contract::rest_speed`] or less.
     ///
     /// One surely at rest here is faster than that by twice the error at most, and any other
@@ -45,22 +45,22 @@ pub(super) fn grace(contract: &Contract) -> u16 {
 /// It is counted twice, so that two shields can rely on each other: who `surely` rests in one has
 /// rested `perhaps` in the other for as long, or for one period less if one of them sees everything a period later.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Stay {
+pub(super) struct Standstill {
     pub(super) perhaps: u16,
     pub(super) surely: u16,
     /// It moved when it was last seen: perhaps for that one moment only, which somebody else may have missed.
     moved: bool,
 }
 
-impl Stay {
+impl Standstill {
     /// One more period.
-    pub(super) fn note(&mut self, rest: Rest) {
-        let moves = rest == Rest::No;
+    pub(super) fn note(&mut self, rest: RestState) {
+        let moves = rest == RestState::No;
         let count = |keeps: bool, periods: u16| {
             if keeps { periods.saturating_add(1) } else { 0 }
         };
         self.perhaps = count(!(moves && self.moved), self.perhaps);
-        self.surely = count(rest == Rest::Surely, self.surely);
+        self.surely = count(rest == RestState::Surely, self.surely);
         self.moved = moves;
     }
 }

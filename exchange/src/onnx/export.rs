@@ -6,8 +6,8 @@ use super::proto::{
 use super::tensor::FLOAT;
 use crate::{description, layers};
 use cede_controller::Weights;
-use cede_controller::features::LIMIT;
 use cede_controller::policy::MAX_ACCELERATION;
+use cede_controller::policy::features::LIMIT;
 use prost::Message;
 
 /// Operators of the year 2020, which every runtime in use knows.

@@ -3,9 +3,9 @@
 use super::chain::{self, Chain, GraphError};
 use crate::description::{self, FEATURES, PERSPECTIVE};
 use crate::layers::Layer;
-use cede_controller::features::LIMIT;
-use cede_controller::mlp::{LANES, MAX_WIDTH, OUTPUTS};
-use cede_controller::weights::{Draft, MAX_WEIGHT};
+use cede_controller::policy::features::LIMIT;
+use cede_controller::policy::mlp::{LANES, MAX_WIDTH, OUTPUTS};
+use cede_controller::policy::weights::{Draft, MAX_WEIGHT};
 use cede_controller::{FeatureSet, Perspective, WeightsError};
 use sha2::{Digest, Sha256};
 

@@ -2,9 +2,9 @@ use super::proto::{
     Attribute, Dimension, Graph, Model, Node, Shape, Tensor, TensorType, Type, ValueInfo,
 };
 use super::*;
-use cede_controller::features::LIMIT;
 use cede_controller::policy::MAX_ACCELERATION;
-use cede_controller::weights::Draft;
+use cede_controller::policy::features::LIMIT;
+use cede_controller::policy::weights::Draft;
 use cede_controller::{FeatureSet, Mlp, Perspective, Weights};
 use proptest::prelude::*;
 use prost::Message;

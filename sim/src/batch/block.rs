@@ -5,9 +5,9 @@ mod score;
 use super::library::{Library, Scenario};
 use super::motion::Motion;
 use super::{LANES, Lanes};
-use crate::encounter::Role;
 use crate::reward::EpisodeLength;
-use cede_controller::svo::svo;
+use cede_controller::policy::svo::svo;
+use cede_data::encounter::Role;
 use core::f32::consts::FRAC_PI_4;
 use core::ops::Range;
 use rand::RngExt;
@@ -30,7 +30,7 @@ pub enum Outcome {
 /// Eight encounters of `N` vehicles, stepped together; entry `i` of every array belongs to encounter `i`.
 ///
 /// Vehicles 0 and 1 are the two judged ones, the others the traffic around them, in the order
-/// of [`crate::Encounter::participants`]; vehicles beyond `N` are left out. Methods panic if they are
+/// of [`cede_data::Encounter::participants`]; vehicles beyond `N` are left out. Methods panic if they are
 /// asked for a lane or a vehicle that there is not; nothing else makes them panic.
 #[derive(Clone, Debug)]
 pub struct Block<const N: usize> {
@@ -133,7 +133,7 @@ impl<const N: usize> Block<N> {
         &self.svo
     }
 
-    /// Least separation (m, as in [`crate::OrientedBox::separation`]) of a judged vehicle from any vehicle
+    /// Least separation (m, as in [`cede_controller::separation::OrientedBox::separation`]) of a judged vehicle from any vehicle
     /// after the last step. Only its sign is meant where all are farther apart than a vehicle's diagonal:
     /// it may be infinite there.
     #[must_use]

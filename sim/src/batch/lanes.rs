@@ -4,15 +4,14 @@
 //! selects; so it gives the same bits (tested below and in `sim/tests/batch.rs`). The compiler
 //! would not vectorise the scalars by itself, because it takes a division for too dear to be done in vain.
 
-use crate::encounter::STEP;
-use crate::kinematics::MAX_ACCELERATION;
 use crate::reward::SVO_SCALE;
 use cede_controller::Footprint;
-use cede_controller::svo::MIN_DISTANCE;
+use cede_controller::kinematics::{MAX_ACCELERATION, STEP};
+use cede_controller::policy::svo::MIN_DISTANCE;
 use core::f32::consts::FRAC_PI_2;
 use wide::f32x8;
 
-/// Twin of [`crate::clamp_acceleration`].
+/// Twin of [`cede_controller::kinematics::clamp_acceleration`].
 #[inline]
 fn clamp_acceleration(acceleration: f32x8) -> f32x8 {
     let most = f32x8::splat(MAX_ACCELERATION);
@@ -20,7 +19,7 @@ fn clamp_acceleration(acceleration: f32x8) -> f32x8 {
     raised.simd_ge(most).bitselect(most, raised)
 }
 
-/// Twin of [`crate::advance`] with a clamped acceleration.
+/// Twin of [`cede_controller::kinematics::advance`] with a clamped acceleration.
 #[inline]
 pub(super) fn advance(s: f32x8, v: f32x8, acceleration: f32x8) -> (f32x8, f32x8) {
     let acceleration = clamp_acceleration(acceleration);
@@ -49,7 +48,7 @@ pub(super) struct Boxes {
     pub(super) direction: [f32x8; 2],
 }
 
-/// Twin of [`crate::OrientedBox::separation`] for vehicles of one `footprint`.
+/// Twin of [`cede_controller::separation::OrientedBox::separation`] for vehicles of one `footprint`.
 #[inline]
 pub(super) fn separation(a: Boxes, b: Boxes, footprint: Footprint) -> f32x8 {
     let between = [b.centre[0] - a.centre[0], b.centre[1] - a.centre[1]];
@@ -99,7 +98,7 @@ const ARC_TANGENT: [f32; 7] = [
 
 /// SVO (rad) of the first of two vehicles, from their speeds (m/s) and distances to the conflict point (m).
 ///
-/// Not a twin to the bit: within 4·10⁻⁷ rad of [`cede_controller::svo::svo`] for speeds that are 0
+/// Not a twin to the bit: within 4·10⁻⁷ rad of [`cede_controller::policy::svo::svo`] for speeds that are 0
 /// or at least 10⁻³⁰, by a polynomial.
 #[inline]
 pub(super) fn svo(speed: [f32x8; 2], distance: [f32x8; 2], last: f32x8) -> f32x8 {
@@ -130,8 +129,8 @@ fn first_quadrant_angle(y: f32x8, x: f32x8) -> f32x8 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::OrientedBox;
-    use crate::driver::State;
+    use cede_controller::kinematics::State;
+    use cede_controller::separation::OrientedBox;
     use cede_controller::{Point, Pose};
     use proptest::prelude::*;
 
@@ -143,7 +142,7 @@ mod tests {
             [d, other_d].map(f32x8::splat),
             f32x8::splat(0.3),
         );
-        let exact = cede_controller::svo::svo(v, d, other_v, other_d, 0.3);
+        let exact = cede_controller::policy::svo::svo(v, d, other_v, other_d, 0.3);
         (fast.to_array()[0] - exact).abs()
     }
 
@@ -180,7 +179,7 @@ mod tests {
             s in -200.0_f32..200.0, v in prop_oneof![Just(0.0_f32), 0.0_f32..30.0],
             a in prop_oneof![Just(f32::NAN), Just(f32::INFINITY), Just(-0.0), -8.0_f32..8.0],
         ) {
-            let scalar = crate::advance(State { s, v }, crate::clamp_acceleration(a));
+            let scalar = cede_controller::kinematics::advance(State { s, v }, cede_controller::kinematics::clamp_acceleration(a));
             let [s, v, a] = [s, v, a].map(f32x8::splat);
             let (next_s, next_v) = advance(s, v, a);
             prop_assert_eq!(next_s.to_array(), [scalar.s; 8]);

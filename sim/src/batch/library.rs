@@ -1,9 +1,9 @@
 //! Encounters prepared for stepping: all routes as one list of segments, all recorded SVOs as one list of angles.
 
-use crate::driver::State;
-use crate::encounter::{Encounter, Participant, Role};
-use cede_controller::svo::svo;
+use cede_controller::kinematics::State;
+use cede_controller::policy::svo::svo;
 use cede_controller::{Footprint, Point};
+use cede_data::encounter::{Encounter, Participant, Role};
 use core::f32::consts::FRAC_PI_4;
 use thiserror::Error;
 

@@ -3,7 +3,7 @@
 use super::lanes::{Boxes, advance};
 use super::library::{Library, Track};
 use super::{LANES, Lanes};
-use crate::driver::State;
+use cede_controller::kinematics::State;
 use cede_controller::{Point, Pose};
 use wide::f32x8;
 

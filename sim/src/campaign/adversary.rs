@@ -1,9 +1,8 @@
 //! Drivers that try to be hit, and keep the contract.
 
 use super::scenario::Scenario;
-use crate::driver::State;
-use crate::encounter::STEP;
 use cede_controller::Zone;
+use cede_controller::kinematics::{STEP, State};
 use cede_controller::shield::margin::safe_gap;
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -107,8 +106,8 @@ impl Adversary {
 
 /// The zones of vehicle `me` with vehicle 0, as that one sees them.
 fn zones(scenario: &Scenario, me: usize) -> impl Iterator<Item = &Zone> {
-    let meeting = scenario.vehicles[0].scene.meetings().get(me - 1);
-    meeting.into_iter().flat_map(|m| m.zones())
+    let conflict = scenario.vehicles[0].scene.conflicts().get(me - 1);
+    conflict.into_iter().flat_map(|m| m.zones())
 }
 
 /// The acceleration that brings `me` into the middle of its zone when the ego is in the middle of its own.

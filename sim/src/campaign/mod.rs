@@ -9,11 +9,9 @@ mod scenario;
 
 pub use scenario::{Scenario, Setup};
 
-use crate::driver::State;
-use crate::encounter::STEP;
 use crate::judge::Judge;
-use crate::kinematics::advance;
 use adversary::Adversary;
+use cede_controller::kinematics::{STEP, State, advance};
 use cede_controller::shield::{Rules, Sound};
 use cede_controller::{Cause, Decision, Fault, Footprint, Observation, Shield, Vehicle};
 use rand::{RngExt, SeedableRng};
@@ -21,7 +19,7 @@ use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
 /// Most other vehicles of a scenario.
-pub const OTHERS: usize = cede_controller::scene::MAX_OTHERS;
+pub const OTHERS: usize = cede_controller::junction::scene::MAX_OTHERS;
 
 /// What a campaign saw.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -288,7 +286,7 @@ impl<R: Rules> World<R> {
             .zip(&self.minds)
             .filter(|(_, mind)| matches!(mind, Mind::Shielded { .. }))
             .all(|((vehicle, state), _)| {
-                let zones = vehicle.scene.meetings().iter().flat_map(|m| m.zones());
+                let zones = vehicle.scene.conflicts().iter().flat_map(|m| m.zones());
                 zones.filter(|z| !z.is_lane()).all(|z| state.s >= z.ego.to)
             })
     }

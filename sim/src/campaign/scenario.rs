@@ -1,8 +1,8 @@
 //! Random scenarios: vehicles on random routes through one intersection.
 
 use super::OTHERS;
-use crate::driver::State;
-use crate::overlap::OrientedBox;
+use cede_controller::kinematics::State;
+use cede_controller::separation::OrientedBox;
 use cede_controller::shield::contract::Precedence;
 use cede_controller::shield::margin::safe_gap;
 use cede_controller::{Contract, Footprint, Path, Point, RightOfWay, Route, Scene, Zone};
@@ -235,7 +235,7 @@ fn fits(setup: Setup, (route, start): &(Route<32>, State), placed: &[(Route<32>,
         let apart = here.separation(&covers(other_route, other)) > 0.5;
         apart
             && Scene::<1>::new(path(route), &[path(other_route)]).is_ok_and(|scene| {
-                let zones = || scene.meetings().iter().flat_map(|m| m.zones());
+                let zones = || scene.conflicts().iter().flat_map(|m| m.zones());
                 zones().all(|zone| leaves_room(setup, zone, start, other))
                     && zones().all(|zone| leaves_room(setup, &zone.swapped(), other, start))
             })

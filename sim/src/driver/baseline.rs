@@ -1,8 +1,8 @@
 //! The rule-based drivers by name.
 
 use super::{DriverFactory, Human, Idm, InitialSpeed, Logistic, MeanSpeed, NearerFirst, Replay};
-use crate::encounter::Encounter;
 use cede_controller::ContractError;
+use cede_data::encounter::Encounter;
 use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
@@ -107,10 +107,10 @@ impl FromStr for Baseline {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::encounter::Role;
     use crate::episode::{End, Episode};
     use crate::evaluate::clearance;
     use crate::fixture::crossing;
+    use cede_data::encounter::Role;
 
     fn run(baseline: Baseline, training: &[&Encounter], encounter: &Encounter) -> Episode {
         let factory = baseline.fit(training).unwrap();

@@ -1,7 +1,8 @@
 //! Two drivers without eyes: they keep a speed.
 
 use super::{Driver, DriverFactory, View};
-use crate::encounter::{Encounter, Manoeuvre, Role, STEP};
+use cede_controller::kinematics::STEP;
+use cede_data::encounter::{Encounter, Manoeuvre, Role};
 use std::collections::HashMap;
 
 /// Keeps the speed that the vehicle had at the start.

@@ -1,12 +1,13 @@
 //! The controller itself, as a driver: the code that runs in the vehicle.
 
-use super::{Driver, DriverFactory, State, View};
-use crate::encounter::{Encounter, Role};
-use crate::sight::Bystanders;
+use super::{Driver, DriverFactory, View};
+use crate::observation_model::Bystanders;
+use cede_controller::kinematics::State;
 use cede_controller::{
     Cause, Contract, ContractError, Controller, Decision, Footprint, Observation, Part, Path,
-    Policy, Scene, Surroundings, Vehicle,
+    Policy, Scene, TrafficContext, Vehicle,
 };
+use cede_data::encounter::{Encounter, Role};
 
 /// Cede: a policy behind the shield. Each vehicle considers the one that it meets;
 /// its policy also knows the traffic around them.
@@ -72,7 +73,7 @@ pub fn scene(encounter: &Encounter, ego: usize) -> Option<Scene<1>> {
 /// What vehicle `view.ego` senses of itself and the one that it meets; `None` if it is not there itself.
 #[must_use]
 pub fn observe(view: &View<'_>) -> Option<Observation<1>> {
-    let vehicle = |(participant, state): (&crate::Participant, State)| Vehicle {
+    let vehicle = |(participant, state): (&cede_data::Participant, State)| Vehicle {
         s: state.s,
         speed: state.v,
         pose: participant.route.pose(state.s),
@@ -84,10 +85,11 @@ pub fn observe(view: &View<'_>) -> Option<Observation<1>> {
 }
 
 /// What the bystanders are to vehicle `view.ego` now.
-pub(super) fn around(bystanders: &Bystanders, view: &View<'_>) -> Surroundings {
-    view.own().map_or_else(Surroundings::default, |(_, state)| {
-        bystanders.around(view.encounter, view.step as usize, state.s)
-    })
+pub(super) fn around(bystanders: &Bystanders, view: &View<'_>) -> TrafficContext {
+    view.own()
+        .map_or_else(TrafficContext::default, |(_, state)| {
+            bystanders.around(view.encounter, view.step as usize, state.s)
+        })
 }
 
 struct Seat {
@@ -99,8 +101,7 @@ struct Seat {
 
 impl Driver for Seat {
     fn accelerate(&mut self, view: &View<'_>) -> f32 {
-        self.controller
-            .set_surroundings(around(&self.bystanders, view));
+        self.controller.set_traffic(around(&self.bystanders, view));
         self.last = observe(view).map(|seen| self.controller.decide(&self.scene, &seen));
         self.last.map_or(0.0, |decision| decision.acceleration)
     }

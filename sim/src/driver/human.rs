@@ -1,11 +1,14 @@
 //! The human driver of the synthetic scenarios, in anybody's encounter.
 
-use super::{Driver, DriverFactory, State, View, idm};
-use crate::encounter::{Encounter, Participant, STEP};
-use crate::synthetic::human::{self, Character, Leader, Right, Rival, Situation};
-use crate::synthetic::profile::SpeedProfile;
-use crate::synthetic::zone::{Zone, zone};
+use super::{Driver, DriverFactory, View, idm};
 use cede_controller::Point;
+use cede_controller::kinematics::STEP;
+use cede_controller::kinematics::State;
+use cede_data::encounter::{Encounter, Participant};
+use cede_data::synthetic::human;
+use cede_data::synthetic::human::{Character, Leader, Right, Rival, Situation};
+use cede_data::synthetic::profile::SpeedProfile;
+use cede_data::synthetic::zone::{Zone, zone};
 use rand_pcg::Pcg64;
 
 /// A driver drawn from the population of the synthetic scenarios, as at an all-way stop.
@@ -234,7 +237,7 @@ mod tests {
     fn who_comes_much_earlier_mostly_goes_first() {
         let first = |seed| run([20.0, 6.0], [60.0, 6.0], seed).first();
         let left = (0..50)
-            .filter(|&seed| first(seed) == Some(crate::Role::Left))
+            .filter(|&seed| first(seed) == Some(cede_data::Role::Left))
             .count();
         assert!(left >= 45, "{left}");
     }

@@ -1,7 +1,9 @@
 //! The intelligent driver model with stop-sign behaviour.
 
-use super::{Driver, DriverFactory, State, View};
-use crate::encounter::{Encounter, Participant, STEP};
+use super::{Driver, DriverFactory, View};
+use cede_controller::kinematics::STEP;
+use cede_controller::kinematics::State;
+use cede_data::encounter::{Encounter, Participant};
 
 /// Car following by the intelligent driver model; at the intersection it stops, and the one that stopped first goes first.
 ///

@@ -2,8 +2,8 @@
 
 use super::nearer_first::Decided;
 use super::{Driver, DriverFactory};
-use crate::encounter::{Encounter, Manoeuvre, Role};
 use crate::statistics::LogisticRegression;
+use cede_data::encounter::{Encounter, Manoeuvre, Role};
 use std::collections::HashMap;
 
 /// Distances to the conflict point and speeds of both: d, v, d̂, v̂.

@@ -1,7 +1,7 @@
 //! The trivial rule: the vehicle that is nearer to its conflict point goes, the other stops.
 
 use super::{Driver, DriverFactory, View, right_of_way};
-use crate::encounter::{Encounter, Role};
+use cede_data::encounter::{Encounter, Role};
 
 /// Whoever is nearer to its conflict point at the start goes; the other stops and waits.
 #[derive(Clone, Copy, Debug)]

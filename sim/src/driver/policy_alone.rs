@@ -2,9 +2,9 @@
 
 use super::controller::{around, part};
 use super::{Driver, DriverFactory, View, observe, scene};
-use crate::encounter::Encounter;
-use crate::sight::Bystanders;
+use crate::observation_model::Bystanders;
 use cede_controller::{Contract, Controller, Policy, Scene};
+use cede_data::encounter::Encounter;
 
 /// Cede without the shield: for comparison, never for a vehicle.
 #[derive(Clone, Debug)]
@@ -45,7 +45,7 @@ impl Driver for Alone {
         let Some((controller, scene)) = &mut self.seat else {
             return 0.0;
         };
-        controller.set_surroundings(around(&self.bystanders, view));
+        controller.set_traffic(around(&self.bystanders, view));
         observe(view).map_or(0.0, |seen| controller.proposal(scene, &seen))
     }
 }

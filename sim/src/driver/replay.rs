@@ -1,7 +1,7 @@
 //! Replay of recorded accelerations: the floor of the simulator's own error.
 
 use super::{Driver, DriverFactory, View};
-use crate::encounter::Encounter;
+use cede_data::encounter::Encounter;
 
 /// Applies the recorded accelerations step by step, whatever the others do; past the record's end, none.
 #[derive(Clone, Copy, Debug)]

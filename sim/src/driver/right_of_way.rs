@@ -1,7 +1,7 @@
 //! How a vehicle drives once it is known who goes first: one goes, the other stops and waits.
 
 use super::View;
-use crate::encounter::Role;
+use cede_data::encounter::Role;
 
 /// Acceleration (m/s²) with which a vehicle takes up its speed.
 const PULL_AWAY: f32 = 2.0;

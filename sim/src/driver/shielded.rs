@@ -1,8 +1,8 @@
 //! Any driver behind the shield.
 
 use super::{Driver, DriverFactory, View, observe, scene};
-use crate::encounter::Encounter;
 use cede_controller::{Cause, Contract, ContractError, Scene, Shield};
+use cede_data::encounter::Encounter;
 
 /// Passes what another kind of driver wants through the shield that the controller carries.
 pub struct Shielded {
@@ -69,11 +69,11 @@ impl Driver for Behind {
 mod tests {
     use super::*;
     use crate::driver::InitialSpeed;
-    use crate::encounter::Role;
     use crate::episode::{End, Episode};
     use crate::evaluate::clearance;
     use crate::fixture::crossing;
     use crate::metrics::Measures;
+    use cede_data::encounter::Role;
 
     #[test]
     fn one_shielded_vehicle_prevents_the_collision_that_two_blind_ones_have() {

@@ -1,8 +1,8 @@
 //! Where the two vehicles have left their conflict zones.
 
 use crate::driver::scene;
-use crate::encounter::{Encounter, Role};
-use cede_controller::Meeting;
+use cede_controller::RouteConflict;
+use cede_data::encounter::{Encounter, Role};
 
 /// The arc lengths (m) at which the two have left the last of their conflict zones for good; where the
 /// routes end in one lane, the routes' ends.
@@ -12,7 +12,7 @@ pub fn clearance(encounter: &Encounter) -> [f32; 2] {
         let scene = scene(encounter, role as usize);
         let zones = scene
             .iter()
-            .flat_map(|scene| scene.meetings().iter().flat_map(Meeting::zones));
+            .flat_map(|scene| scene.conflicts().iter().flat_map(RouteConflict::zones));
         let last = zones.map(|zone| zone.ego.to).fold(0.0, f32::max);
         last.min(encounter.judged(role).route.length())
     })

@@ -1,10 +1,10 @@
 //! A row of the table: one driver on one split.
 
 use super::Drive;
-use crate::encounter::EncounterId;
 use crate::episode::End;
 use crate::metrics::HORIZONS;
 use crate::statistics::{Mean, Share};
+use cede_data::encounter::EncounterId;
 use serde::Serialize;
 use std::collections::BTreeSet;
 

@@ -1,7 +1,7 @@
 //! Which encounters are judged, and which may be learned from.
 
-use crate::data::{Dataset, Split};
-use crate::encounter::Encounter;
+use cede_data::encounter::Encounter;
+use cede_data::{Dataset, Split};
 use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;

@@ -1,7 +1,7 @@
 //! How far an episode strays from its record.
 
-use crate::encounter::{Encounter, Role};
 use crate::episode::Episode;
+use cede_data::encounter::{Encounter, Role};
 
 /// The root of the mean of `squares`; `None` without any.
 pub(super) fn root_mean(squares: impl Iterator<Item = f64>) -> Option<f64> {

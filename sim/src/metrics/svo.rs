@@ -3,10 +3,10 @@
 //! The other's SVO is the complement to π/2, so its error is the same.
 
 use super::deviation::root_mean;
-use crate::driver::State;
-use crate::encounter::{Encounter, Role};
 use crate::episode::Episode;
-use cede_controller::svo::svo;
+use cede_controller::kinematics::State;
+use cede_controller::policy::svo::svo;
+use cede_data::encounter::{Encounter, Role};
 use std::f32::consts::FRAC_PI_4;
 
 /// The left-turner's SVO (rad) towards the other in each of `states`, until one of the two has

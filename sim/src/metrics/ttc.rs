@@ -1,9 +1,9 @@
 //! Time to collision: when the two would touch if both kept their speeds.
 
-use crate::driver::State;
-use crate::encounter::{Encounter, Role, STEP};
-use crate::overlap::OrientedBox;
 use cede_controller::Footprint;
+use cede_controller::kinematics::{STEP, State};
+use cede_controller::separation::OrientedBox;
+use cede_data::encounter::{Encounter, Role};
 
 /// Times to collision beyond this many seconds count as none.
 pub const HORIZON: f32 = 5.0;

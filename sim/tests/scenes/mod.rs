@@ -1,11 +1,9 @@
 //! Random encounters for tests and benches: a left turn against oncoming traffic, 1 km from the
 //! origin as recorded sites are, with queues behind both vehicles.
 
+use cede_controller::kinematics::{STEP, State, advance};
 use cede_controller::{ConflictKind, Footprint, Point};
-use cede_sim::encounter::STEP;
-use cede_sim::{
-    Encounter, EncounterId, Manoeuvre, Participant, Role, Sample, SimRoute, State, advance,
-};
+use cede_data::{Encounter, EncounterId, Manoeuvre, Participant, Role, Sample, SimRoute};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::f32::consts::FRAC_PI_2;

@@ -7,9 +7,10 @@ use super::motion::{
 };
 use super::term::Term;
 use super::{Claim, Lemma};
+use cede_controller::Real;
 use cede_controller::shield::contract::Follower;
 use cede_controller::shield::reach::Reach;
-use cede_controller::shield::{Contract, Real, margin};
+use cede_controller::shield::{Contract, margin};
 
 pub(super) fn lemmas() -> Vec<Lemma> {
     vec![

@@ -3,8 +3,9 @@
 use super::formula::Formula;
 use super::symbol::stand_ins;
 use super::term::Term;
+use cede_controller::Real;
+use cede_controller::shield::Contract;
 use cede_controller::shield::contract::{Ego, Follower, Other};
-use cede_controller::shield::{Contract, Real};
 
 /// The contract of which nothing is known but what [`assumed`] says.
 pub(super) fn any_contract() -> Contract {

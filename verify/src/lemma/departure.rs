@@ -5,9 +5,10 @@ use super::formula::{Formula, all, any, not};
 use super::motion::{acceleration, moves, not_negative, number, seconds, speed, state, within};
 use super::term::Term;
 use super::{Claim, Lemma};
+use cede_controller::Real;
+use cede_controller::shield::Contract;
 use cede_controller::shield::margin::{self, Departure};
 use cede_controller::shield::reach::Reach;
-use cede_controller::shield::{Contract, Real};
 
 pub(super) fn lemmas() -> Vec<Lemma> {
     vec![

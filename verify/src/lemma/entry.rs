@@ -10,9 +10,10 @@ use super::formula::{Formula, all, any};
 use super::motion::{not_negative, number, seconds, speed, state};
 use super::term::Term;
 use super::{Claim, Lemma};
+use cede_controller::Real;
 use cede_controller::shield::contract::Contract;
+use cede_controller::shield::margin;
 use cede_controller::shield::reach::Reach;
-use cede_controller::shield::{Real, margin};
 
 pub(super) fn lemmas() -> Vec<Lemma> {
     vec![

@@ -5,7 +5,7 @@
 
 use super::formula::{Formula, all, any};
 use super::term::Term;
-use cede_controller::shield::Real;
+use cede_controller::Real;
 use cede_controller::shield::reach::Reach;
 
 /// A symbol for a distance travelled and one for a speed.

@@ -5,8 +5,9 @@ use super::formula::{Formula, all};
 use super::motion::{limited, metres, moves, not_negative, number, seconds, speed, state, within};
 use super::term::Term;
 use super::{Claim, Lemma};
+use cede_controller::Real;
 use cede_controller::shield::reach::Reach;
-use cede_controller::shield::{Contract, Real, margin};
+use cede_controller::shield::{Contract, margin};
 
 pub(super) fn lemmas() -> Vec<Lemma> {
     vec![

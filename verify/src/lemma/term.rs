@@ -1,7 +1,7 @@
 //! A number that is not known: what the shield's own functions make of it is an expression.
 
 use super::symbol::{Symbol, stands_for};
-use cede_controller::shield::Real;
+use cede_controller::Real;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::marker::PhantomData;

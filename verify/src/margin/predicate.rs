@@ -1,6 +1,7 @@
 //! The shield's predicates: its margins, put together as `shield/verified.rs` and `shield/hazard.rs` do.
 
-use cede_controller::shield::{Contract, Real, margin};
+use cede_controller::Real;
+use cede_controller::shield::{Contract, margin};
 
 /// Inputs of a predicate, at most.
 pub(super) const INPUTS: usize = 6;

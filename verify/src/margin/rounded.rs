@@ -1,7 +1,7 @@
 //! A number as the reals have it and as `f32` computes it, for all inputs of a box at once.
 
 use crate::interval::Interval;
-use cede_controller::shield::Real;
+use cede_controller::Real;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// What the real-valued expression can be, what its `f32` evaluation can be, and how far the one can be from

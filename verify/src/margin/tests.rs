@@ -4,12 +4,13 @@ use super::predicate::{INPUTS, Input, Predicate, Region};
 use super::rounded::Rounded;
 use super::{bound, shortfall};
 use crate::interval::Interval;
+use cede_controller::Real;
 use cede_controller::Route;
 use cede_controller::geometry::{Footprint, Point, Pose};
+use cede_controller::junction::scene::{Path, Scene};
+use cede_controller::junction::zone::{FAR, Zone};
 use cede_controller::observation::{Observation, Vehicle};
-use cede_controller::scene::{Path, Scene};
-use cede_controller::shield::{Contract, Real, Shield, margin};
-use cede_controller::zone::{FAR, Zone};
+use cede_controller::shield::{Contract, Shield, margin};
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -223,7 +224,7 @@ fn scene(ego: &Route<4>, other: &Route<4>) -> Scene<1> {
 }
 
 fn zones(ego: &Route<4>, other: &Route<4>) -> Vec<Zone> {
-    scene(ego, other).meetings()[0].zones().copied().collect()
+    scene(ego, other).conflicts()[0].zones().copied().collect()
 }
 
 fn shield_margin(

@@ -9,8 +9,8 @@
 
 use super::interval::{Dual, Interval, STATE};
 use crate::network::{Feature, InputBox};
-use cede_controller::features::{CREEP, HORIZON, LIMIT};
-use cede_controller::svo::MIN_DISTANCE;
+use cede_controller::policy::features::{CREEP, HORIZON, LIMIT};
+use cede_controller::policy::svo::MIN_DISTANCE;
 use cede_controller::{ConflictKind, FeatureSet, RightOfWay};
 use cede_sim::property::Setting;
 

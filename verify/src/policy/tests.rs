@@ -1,6 +1,6 @@
 use super::search::region;
 use super::*;
-use cede_controller::weights::Draft;
+use cede_controller::policy::weights::Draft;
 use cede_controller::{ConflictKind, Mlp, Policy, RightOfWay};
 use cede_sim::property::{Claim, Kind, Right, StateProperty, Variable};
 use proptest::prelude::*;

@@ -5,7 +5,7 @@ use super::states::{Moment, States};
 use super::step::Loop;
 use crate::interval::Interval;
 use crate::policy::Subject;
-use cede_sim::encounter::STEP;
+use cede_controller::kinematics::STEP;
 use rayon::prelude::*;
 use std::time::Instant;
 

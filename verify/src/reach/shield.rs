@@ -5,8 +5,9 @@
 
 use super::states::States;
 use crate::interval::Interval;
+use cede_controller::Real;
 use cede_controller::shield::reach::Reach;
-use cede_controller::shield::{Contract, Real, margin};
+use cede_controller::shield::{Contract, margin};
 
 /// The conflict zone, as metres beyond the conflict points.
 #[derive(Clone, Copy, Debug)]

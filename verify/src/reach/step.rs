@@ -5,8 +5,9 @@ use super::shield::{Commands, Shield, Zone, spent};
 use super::states::{Moment, States};
 use crate::interval::Interval;
 use crate::policy::{Response, Subject};
-use cede_controller::shield::{Contract, Real};
-use cede_sim::encounter::STEP;
+use cede_controller::Real;
+use cede_controller::kinematics::STEP;
+use cede_controller::shield::Contract;
 
 /// The sets of states from one box of initial states, one a step.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,20 +44,20 @@ impl<'a> Loop<'a> {
     pub fn new(subject: &'a Subject<'a>, scenario: &Scenario) -> Self {
         let setting = scenario.setting();
         let scene = geometry(setting.right_of_way);
-        let meeting = &scene.meetings()[0];
+        let conflict = &scene.conflicts()[0];
         let offset = |from: f32, to: f32, conflict: f32| {
             let at = |x: f32| f64::from(x) - f64::from(conflict);
             Interval::new(at(from), at(to))
         };
-        let mut zones = meeting.zones();
+        let mut zones = conflict.zones();
         let zone = zones.next().map_or(
             Zone {
                 ego: Interval::ZERO,
                 other: Interval::ZERO,
             },
             |zone| Zone {
-                ego: offset(zone.ego.from, zone.ego.to, meeting.ego_conflict),
-                other: offset(zone.other.from, zone.other.to, meeting.other_conflict),
+                ego: offset(zone.ego.from, zone.ego.to, conflict.ego_conflict),
+                other: offset(zone.other.from, zone.other.to, conflict.other_conflict),
             },
         );
         let [least, most] = scenario.other_acceleration;

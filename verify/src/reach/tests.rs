@@ -1,11 +1,10 @@
 use super::*;
 use crate::policy::Subject;
-use cede_controller::weights::Draft;
+use cede_controller::kinematics::{State, advance};
+use cede_controller::policy::weights::Draft;
 use cede_controller::{
     Contract, Controller, Observation, Part, Point, Policy, Pose, Vehicle, Weights, embedded,
 };
-use cede_sim::State;
-use cede_sim::kinematics::advance;
 use cede_sim::property::Right;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -33,16 +32,16 @@ fn subject(words: &[u32]) -> Subject<'_> {
 /// States of the two (distance, speed) as the real controller drives them.
 fn drive(scenario: &Scenario, from: [f32; 4], random: &mut Pcg64, steps: usize) -> Vec<[f64; 4]> {
     let scene = geometry(scenario.setting().right_of_way);
-    let meeting = scene.meetings()[0];
+    let conflict = scene.conflicts()[0];
     let policy = Policy::new(embedded::words()).expect("a sound file");
     let mut controller =
         Controller::<1>::new(policy, Contract::WORST_CASE, Part::Left).expect("a sound contract");
     let mut ego = State {
-        s: meeting.ego_conflict - from[0],
+        s: conflict.ego_conflict - from[0],
         v: from[1],
     };
     let mut other = State {
-        s: meeting.other_conflict - from[2],
+        s: conflict.other_conflict - from[2],
         v: from[3],
     };
     let seen = |state: State, direction| Vehicle {
@@ -59,9 +58,9 @@ fn drive(scenario: &Scenario, from: [f32; 4], random: &mut Pcg64, steps: usize) 
     for _ in 0..=steps {
         let place = |state: State, conflict: f32| f64::from(conflict) - f64::from(state.s);
         states.push([
-            place(ego, meeting.ego_conflict),
+            place(ego, conflict.ego_conflict),
             f64::from(ego.v),
-            place(other, meeting.other_conflict),
+            place(other, conflict.other_conflict),
             f64::from(other.v),
         ]);
         let observation = Observation {

@@ -3,8 +3,7 @@
 use crate::failure::Failure;
 use crate::source::Source;
 use cede_controller::ConflictKind;
-use cede_sim::data::{STEP_MS, Summary};
-use cede_sim::{Dataset, Encounter, Manoeuvre, Role, output};
+use cede_data::{Dataset, Encounter, Manoeuvre, Role, STEP_MS, Summary, output};
 use serde::Serialize;
 use std::path::PathBuf;
 

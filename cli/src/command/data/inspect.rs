@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::scene;
 use crate::source::Source;
-use cede_sim::data::{Distribution, Summary};
+use cede_data::{Distribution, Summary};
 use std::path::PathBuf;
 
 /// Options of `cede data inspect`.

@@ -19,7 +19,7 @@ pub(crate) struct Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let sites = cede_sim::synthetic::write(&args.out, args.encounters, args.seed)?;
+    let sites = cede_data::synthetic::write(&args.out, args.encounters, args.seed)?;
     println!("site          recordings  encounters");
     for site in &sites {
         let (name, files) = (&site.name, site.files.len());

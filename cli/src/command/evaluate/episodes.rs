@@ -1,10 +1,9 @@
 //! One line an episode: CSV for people and spreadsheets, Parquet for data frames.
 
 use crate::failure::Failure;
-use cede_sim::Role;
+use cede_data::{Role, output};
 use cede_sim::episode::End;
 use cede_sim::evaluate::{Drive, Row};
-use cede_sim::output;
 use parquet::errors::ParquetError;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::record::RecordWriter;

@@ -1,9 +1,10 @@
 //! An encounter as numbers: where both vehicles were, and what the shield did.
 
 use crate::report::{Class, words};
+use cede_controller::kinematics::State;
+use cede_data::{Encounter, Role};
 use cede_sim::evaluate::{Drive, Row};
 use cede_sim::metrics::{recorded_states, svo_series};
-use cede_sim::{Encounter, Role, State};
 
 /// Rows of the table are so many steps (0.5 s) apart.
 const EVERY: usize = 5;

@@ -4,10 +4,11 @@ use super::Trained;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::training::{Identity, Training};
-use cede_sim::{Encounter, output, weights};
-use cede_train::curve::{Curve, Panel};
-use cede_train::episodes::Course;
-use cede_train::provenance::{Provenance, data_hash};
+use cede_data::{Encounter, output};
+use cede_sim::weights;
+use cede_train::driving::episodes::Course;
+use cede_train::run::curve::{Curve, Panel};
+use cede_train::run::provenance::{Provenance, data_hash};
 use cede_train::run::{Algorithm, Lessons, Settings};
 use std::path::{Path, PathBuf};
 
@@ -90,7 +91,7 @@ impl Job<'_> {
             told = share;
             Ok(())
         })?;
-        let words = training.run.pilot().weights(provenance.hash());
+        let words = training.run.view().weights(provenance.hash());
         let words = words.map_err(|error| self.diverged(&error))?;
         let curve = std::mem::take(&mut training.curve);
         write(&file, &words, &curve)?;

@@ -1,7 +1,7 @@
 //! `cede verify lemmas`.
 
 use crate::failure::Failure;
-use cede_sim::output;
+use cede_data::output;
 use cede_verify::lemma::{Answer, Lemma, Quantity, Settled, Solver, SolverError, lemmas};
 use clap::Args;
 use miette::IntoDiagnostic;

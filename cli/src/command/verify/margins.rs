@@ -1,8 +1,8 @@
 //! `cede verify margins`.
 
 use crate::failure::Failure;
+use cede_controller::junction::zone::INFLATION;
 use cede_controller::shield::Contract;
-use cede_controller::zone::INFLATION;
 use cede_verify::margin::{Bound, Predicate, bound, shortfall};
 use clap::Args;
 use miette::IntoDiagnostic;

@@ -1,7 +1,7 @@
 //! `cede verify network`.
 
 use crate::failure::Failure;
-use cede_sim::output;
+use cede_data::output;
 use cede_verify::network::{self as verifier, Answer, Branching, Certificate, Report, Settings};
 use clap::{Args, ValueEnum};
 use miette::{IntoDiagnostic, WrapErr, miette};

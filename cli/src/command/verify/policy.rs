@@ -1,7 +1,7 @@
 //! `cede verify policy`.
 
 use crate::failure::Failure;
-use cede_controller::weights::words;
+use cede_controller::policy::weights::words;
 use cede_controller::{Perspective, Weights};
 use cede_sim::property::{Properties, StateProperty};
 use cede_verify::policy::{Finding, Settled, Subject};
@@ -109,7 +109,7 @@ impl Policy {
 /// The words of a weights file, the embedded one if no `path` is given, and what to call it.
 pub(super) fn policy_words(path: Option<&Path>) -> Result<(&Path, Vec<u32>), Failure> {
     let Some(path) = path else {
-        let embedded = cede_controller::embedded::words().to_vec();
+        let embedded = cede_controller::policy::embedded::words().to_vec();
         return Ok((Path::new("the embedded policy"), embedded));
     };
     let bytes = named(path, std::fs::read(path).into_diagnostic())?;

@@ -3,8 +3,8 @@
 use crate::failure::Failure;
 use crate::report::{Report, command};
 use cede_controller::{ConflictKind, Contract};
+use cede_data::{Dataset, Encounter};
 use cede_sim::transparency::{Swept, Transparency, sweep, transparency};
-use cede_sim::{Dataset, Encounter};
 use clap::Args;
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -51,7 +51,7 @@ impl Shield {
         }
         if let Some(file) = &self.sweep {
             let rows = sweep(&encounters, Contract::WORST_CASE).unwrap_or_default();
-            cede_sim::output::write(file, |out| csv(out, &rows))?;
+            cede_data::output::write(file, |out| csv(out, &rows))?;
         }
         if let Some(file) = &self.report {
             let mut report = Report::showing(Vec::new(), &data, &command());

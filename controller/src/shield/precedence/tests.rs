@@ -2,9 +2,9 @@ use super::super::hazard::{Passage, granted};
 use super::super::rules::Sound;
 use super::*;
 use crate::geometry::{Footprint, Point, Pose};
-use crate::route::Route;
-use crate::scene::Path;
-use crate::zone::MAX_ZONES;
+use crate::junction::route::Route;
+use crate::junction::scene::Path;
+use crate::junction::zone::MAX_ZONES;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use std::vec::Vec;
@@ -26,7 +26,7 @@ fn the_first_goes_first_and_a_tie_is_the_right_of_ways() {
 
 #[test]
 fn a_pair_takes_eighteen_bytes() {
-    assert_eq!(size_of::<Pair>(), 18);
+    assert_eq!(size_of::<PairMemory>(), 18);
 }
 
 const ROAD: [(f32, f32); 2] = [(-60.0, 0.0), (60.0, 0.0)];
@@ -86,7 +86,7 @@ impl Watchers {
                 others: [Some(other)],
             };
             let claims = memory.note::<R>(&self.contract, rule, &self.scenes[i], &seen);
-            let zone = self.scenes[i].meetings()[0].zones().next().unwrap();
+            let zone = self.scenes[i].conflicts()[0].zones().next().unwrap();
             let passage = Passage::Before {
                 distance: 0.0,
                 speed: 0.0,

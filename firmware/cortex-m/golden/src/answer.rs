@@ -1,6 +1,6 @@
 //! A decision as words: every bit of it.
 
-use cede_controller::{Action, Breach, Cause, Decision, Fault, Intervention, Outlook, Reason};
+use cede_controller::{Action, Breach, Cause, Decision, Fault, Intervention, Prediction, Reason};
 
 /// Words of a decision.
 pub const ANSWER: usize = 11;
@@ -23,9 +23,9 @@ pub fn answer(decision: &Decision) -> [u32; ANSWER] {
         Some(Breach::Ego) => [1, 0],
         Some(Breach::Other(other)) => [2, other.into()],
     };
-    let [asked, svo, expected] = match decision.outlook {
+    let [asked, svo, expected] = match decision.prediction {
         None => [0; 3],
-        Some(Outlook {
+        Some(Prediction {
             other,
             svo,
             acceleration,

@@ -21,7 +21,7 @@ fn main() -> Result<()> {
     let usage = || Error::other("usage: cede-golden FOLDER");
     let folder = std::env::args_os().nth(1).ok_or_else(usage)?;
     let mut random = Random::new(1);
-    let policy = Policy::new(cede_controller::embedded::words()).map_err(Error::other)?;
+    let policy = Policy::new(cede_controller::policy::embedded::words()).map_err(Error::other)?;
     let mut golden = Vec::new();
     for i in 0..SCENES {
         golden.extend(scene(&policy, &mut random, 1 + i % 8)?);

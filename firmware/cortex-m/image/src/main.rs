@@ -9,7 +9,7 @@ mod console;
 mod counter;
 mod stack;
 
-use cede_controller::weights::Aligned;
+use cede_controller::policy::weights::Aligned;
 use cede_controller::{Controller, Decision, Mlp, Policy, Scene, SceneError, embedded};
 use cede_golden::{Golden, OTHERS, QUESTION, answer, controller, observation};
 use cortex_m_rt::entry;

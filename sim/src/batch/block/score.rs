@@ -4,8 +4,8 @@ use super::{Block, Outcome};
 use crate::batch::Lanes;
 use crate::batch::lanes::{separation, svo, svo_deviation};
 use crate::batch::library::Library;
-use crate::encounter::Role;
 use crate::reward::{COLLISION, PAST_THE_RECORD};
+use cede_data::encounter::Role;
 use wide::f32x8;
 
 impl<const N: usize> Block<N> {

@@ -1,0 +1,499 @@
+//! Conflict zones: where, along two routes, two footprints can touch.
+//!
+//! A pair of arc lengths (s, t), the ego's and the other's, is *occupied* if the
+//! two footprints overlap there. On one segment of each route the vehicles move
+//! without turning, so the separating-axis test of the two rectangles is linear
+//! in s and t: the occupied set is the segments' rectangle in the (s, t) plane cut
+//! by eight half-planes, a convex polygon, computed exactly. A [`Zone`] bounds
+//! the polygons that hang together by an interval of s, one of t and one of s − t.
+//!
+//! Nothing is sampled, so nothing is missed between samples. Footprints are
+//! inflated by [`INFLATION`] on every side: that covers rounding and the corners'
+//! sweep while a real vehicle turns from one segment's direction to the next
+//! (for bends of up to 14° in one point).
+
+use crate::geometry::{Footprint, Point};
+use crate::junction::conflict::ConflictKind;
+use crate::junction::route::Route;
+use heapless::Vec;
+
+/// Most zones of one pair of routes; if the routes meet more often, the last zone covers the rest.
+pub const MAX_ZONES: usize = 3;
+
+/// Stands for "without end" (m): larger than any arc length, and finite, so that no NaN can arise.
+pub const FAR: f32 = 1.0e6;
+
+/// Every footprint is taken to be larger by this (m) on each side.
+pub const INFLATION: f32 = 0.02;
+
+/// Zones whose intervals come as near as this (m) are one; also how near to a route's end its end is.
+const TOUCHING: f32 = 1.0e-3;
+
+/// Two directions whose cosine is above this point the same way: within 30°.
+const PARALLEL: f32 = 0.866;
+
+/// Vehicles that touch while they point the same way share a lane if they do so over this distance (m).
+const LANE: f32 = 2.0;
+
+/// A closed interval, `from` ≤ `to`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Span {
+    /// Lower end.
+    pub from: f32,
+    /// Upper end.
+    pub to: f32,
+}
+
+impl Span {
+    /// The smallest interval that holds both.
+    fn hull(self, other: Self) -> Self {
+        let (from, to) = (self.including(other.from), self.including(other.to));
+        Self {
+            from: from.from,
+            to: to.to,
+        }
+    }
+
+    fn including(self, value: f32) -> Self {
+        Self {
+            from: if value < self.from { value } else { self.from },
+            to: if value > self.to { value } else { self.to },
+        }
+    }
+
+    fn touches(self, other: Self) -> bool {
+        self.from <= other.to + TOUCHING && other.from <= self.to + TOUCHING
+    }
+
+    /// Whether `value` is in the interval, ends included.
+    ///
+    /// Cost: constant. Never panics.
+    #[must_use]
+    pub fn contains(self, value: f32) -> bool {
+        self.from <= value && value <= self.to
+    }
+}
+
+/// A stretch of the ego's route and one of the other's in which their footprints can touch.
+///
+/// Outside of it they cannot: wherever the vehicles overlap, the ego's arc length
+/// is in `ego`, the other's is in `other` **and** their difference is in `lead`.
+/// An end of ± [`FAR`] stands for a zone that goes on past the end of a route.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Zone {
+    /// Arc lengths (m) of the ego.
+    pub ego: Span,
+    /// Arc lengths (m) of the other.
+    pub other: Span,
+    /// The ego's arc length minus the other's (m). In a lane that both share: above it the ego is
+    /// ahead of the other, below it behind, and the distance from it is the gap between bumpers.
+    pub lead: Span,
+    /// [`ConflictKind::Merging`] or [`ConflictKind::Following`] in a shared lane, else
+    /// [`ConflictKind::Crossing`]. A route met head-on counts as crossing.
+    pub kind: ConflictKind,
+}
+
+impl Zone {
+    /// The same zone as the other vehicle sees it.
+    ///
+    /// Cost: constant. Never panics.
+    #[must_use]
+    pub fn swapped(&self) -> Self {
+        Self {
+            ego: self.other,
+            other: self.ego,
+            lead: Span {
+                from: -self.lead.to,
+                to: -self.lead.from,
+            },
+            kind: self.kind,
+        }
+    }
+
+    /// Whether both vehicles run along one lane in it.
+    ///
+    /// Cost: constant. Never panics.
+    #[must_use]
+    pub fn is_lane(&self) -> bool {
+        matches!(self.kind, ConflictKind::Merging | ConflictKind::Following)
+    }
+}
+
+/// A part of the occupied set, on the way to a [`Zone`].
+#[derive(Clone, Copy, Debug)]
+struct Patch {
+    ego: Span,
+    other: Span,
+    lead: Span,
+    /// Arc lengths of the ego at which it touches the other while both point the same way.
+    parallel: Option<Span>,
+    /// They do so where a route starts.
+    starts: bool,
+    /// They do so where a route ends.
+    ends: bool,
+}
+
+impl Patch {
+    fn touches(&self, other: &Self) -> bool {
+        self.ego.touches(other.ego) && self.other.touches(other.other)
+    }
+
+    fn absorb(&mut self, other: &Self) {
+        self.ego = self.ego.hull(other.ego);
+        self.other = self.other.hull(other.other);
+        self.lead = self.lead.hull(other.lead);
+        self.parallel = match (self.parallel, other.parallel) {
+            (Some(a), Some(b)) => Some(a.hull(b)),
+            (a, b) => a.or(b),
+        };
+        self.starts |= other.starts;
+        self.ends |= other.ends;
+    }
+
+    fn zone(&self) -> Zone {
+        let lane = self.parallel.is_some_and(|p| p.to - p.from >= LANE);
+        // A shared lane goes on past the end of the shorter route, for both.
+        let end = |interval: Span| Span {
+            to: if lane && self.ends { FAR } else { interval.to },
+            ..interval
+        };
+        Zone {
+            ego: end(self.ego),
+            other: end(self.other),
+            lead: self.lead,
+            kind: match (lane, self.starts) {
+                (true, true) => ConflictKind::Following,
+                (true, false) => ConflictKind::Merging,
+                (false, _) => ConflictKind::Crossing,
+            },
+        }
+    }
+}
+
+/// The zones of a pair of routes, in no particular order.
+pub(crate) type Zones = [Option<Zone>; MAX_ZONES];
+
+/// The zones of two routes.
+///
+/// Cost: one distance for each pair of segments, and a polygon of at most 12 corners for
+/// each that is near. Never panics.
+pub(crate) fn zones<const P: usize>(
+    (ego, ego_footprint): (&Route<P>, Footprint),
+    (other, other_footprint): (&Route<P>, Footprint),
+) -> Zones {
+    let mut patches = [None; MAX_ZONES];
+    for a in segments(ego, ego_footprint) {
+        for b in segments(other, other_footprint) {
+            if let Some(patch) = meet(&a, &b) {
+                insert(&mut patches, patch);
+            }
+        }
+    }
+    patches.map(|patch| patch.map(|patch| patch.zone()))
+}
+
+/// Adds a patch, or widens those that it touches: what hangs together ends up in one.
+fn insert(patches: &mut [Option<Patch>; MAX_ZONES], mut patch: Patch) {
+    let touched = |patches: &mut [Option<Patch>], patch: &Patch| {
+        patches
+            .iter_mut()
+            .find(|slot| slot.is_some_and(|met| met.touches(patch)))
+            .and_then(Option::take)
+    };
+    // Each round empties a slot. The wider patch may touch one that was passed over.
+    while let Some(met) = touched(patches, &patch) {
+        patch.absorb(&met);
+    }
+    if let Some(slot) = patches.iter_mut().find(|slot| slot.is_none()) {
+        *slot = Some(patch);
+    } else if let Some(last) = patches.last_mut().and_then(Option::as_mut) {
+        last.absorb(&patch);
+    }
+}
+
+/// A vehicle on one segment of its route.
+struct Segment {
+    start: Point,
+    direction: Point,
+    /// Arc length at the start.
+    arc: f32,
+    length: f32,
+    first: bool,
+    last: bool,
+    /// Half the footprint's length and width, inflated.
+    half: (f32, f32),
+}
+
+fn segments<const P: usize>(
+    route: &Route<P>,
+    footprint: Footprint,
+) -> impl Iterator<Item = Segment> {
+    let ends = route.points().iter().zip(route.points().iter().skip(1));
+    let arcs = route.arc().iter().zip(route.arc().iter().skip(1));
+    let count = route.points().len();
+    ends.zip(arcs)
+        .enumerate()
+        .map(move |(i, ((&a, &b), (&from, &to)))| Segment {
+            start: a,
+            direction: (b - a) * (1.0 / (to - from)),
+            arc: from,
+            length: to - from,
+            first: i == 0,
+            last: i + 2 == count,
+            half: (
+                0.5 * footprint.length + INFLATION,
+                0.5 * footprint.width + INFLATION,
+            ),
+        })
+}
+
+/// A polygon in the (s, t) plane, both counted from the segments' starts.
+type Polygon = Vec<Point, 12>;
+
+/// What of the two segments is occupied.
+// Not inlined, like `cut`: a microcontroller has no stack for all of their polygons at once.
+#[inline(never)]
+fn meet(a: &Segment, b: &Segment) -> Option<Patch> {
+    let between = a.start - b.start;
+    let reach = a.length + b.length + a.half.0 + a.half.1 + b.half.0 + b.half.1;
+    if between.dot(between) > reach * reach {
+        return None;
+    }
+    let mut polygon = rectangle(a.length, b.length);
+    for (axis, radius) in axes(a, b) {
+        let (along, other_along) = (axis.dot(a.direction), -axis.dot(b.direction));
+        let offset = axis.dot(between);
+        for side in [-1.0, 1.0] {
+            cut(&mut polygon, |p| {
+                radius + side * (offset + along * p.x + other_along * p.y)
+            });
+        }
+    }
+    bounds(a, b, &polygon)
+}
+
+/// The four directions in which two rectangles can be apart, each with the distance of their
+/// centres from which they are.
+fn axes(a: &Segment, b: &Segment) -> [(Point, f32); 4] {
+    let normal = |p: Point| Point::new(-p.y, p.x);
+    let radius = |half: (f32, f32), direction: Point, axis: Point| {
+        half.0 * axis.dot(direction).abs() + half.1 * axis.cross(direction).abs()
+    };
+    [
+        a.direction,
+        normal(a.direction),
+        b.direction,
+        normal(b.direction),
+    ]
+    .map(|axis| {
+        let radius = radius(a.half, a.direction, axis) + radius(b.half, b.direction, axis);
+        (axis, radius)
+    })
+}
+
+fn rectangle(width: f32, height: f32) -> Polygon {
+    let corners = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)];
+    let mut polygon = Polygon::new();
+    for (x, y) in corners {
+        let _ = polygon.push(Point::new(x, y));
+    }
+    polygon
+}
+
+/// Leaves the part of a convex polygon in which `inside` is not negative (Sutherland and Hodgman, 1974).
+#[inline(never)]
+fn cut(polygon: &mut Polygon, inside: impl Fn(Point) -> f32) {
+    let mut kept = Polygon::new();
+    // A cut by a line adds at most one corner, and 4 + 8 fit in the capacity: `push` never fails.
+    let mut keep = |p| {
+        let _ = kept.push(p);
+    };
+    let ahead = polygon.iter().cycle().skip(1);
+    for (&p, &q) in polygon.iter().zip(ahead) {
+        let (at_p, at_q) = (inside(p), inside(q));
+        if at_p >= 0.0 {
+            keep(p);
+        }
+        if (at_p >= 0.0) != (at_q >= 0.0) {
+            keep(p + (q - p) * (at_p / (at_p - at_q)));
+        }
+    }
+    *polygon = kept;
+}
+
+fn bounds(a: &Segment, b: &Segment, polygon: &Polygon) -> Option<Patch> {
+    let first = *polygon.first()?;
+    let point = |value| Span {
+        from: value,
+        to: value,
+    };
+    let (mut ego, mut other) = (point(first.x), point(first.y));
+    let mut lead = point(first.x - first.y);
+    for p in polygon {
+        ego = ego.including(p.x);
+        other = other.including(p.y);
+        lead = lead.including(p.x - p.y);
+    }
+    let starts = (a.first && ego.from <= TOUCHING) || (b.first && other.from <= TOUCHING);
+    let ends =
+        (a.last && ego.to >= a.length - TOUCHING) || (b.last && other.to >= b.length - TOUCHING);
+    let parallel = a.direction.dot(b.direction) > PARALLEL;
+    let offset = a.arc - b.arc;
+    Some(Patch {
+        ego: placed(ego, a),
+        other: placed(other, b),
+        lead: Span {
+            from: lead.from + offset - INFLATION,
+            to: lead.to + offset + INFLATION,
+        },
+        parallel: parallel.then_some(Span {
+            from: a.arc + ego.from,
+            to: a.arc + ego.to,
+        }),
+        starts: parallel && starts,
+        ends: parallel && ends,
+    })
+}
+
+/// An interval on a segment as arc lengths; one that reaches an end of the route goes on past it.
+fn placed(interval: Span, segment: &Segment) -> Span {
+    Span {
+        from: if segment.first && interval.from <= TOUCHING {
+            -FAR
+        } else {
+            segment.arc + interval.from
+        },
+        to: if segment.last && interval.to >= segment.length - TOUCHING {
+            FAR
+        } else {
+            segment.arc + interval.to
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn route(points: &[(f32, f32)]) -> Route<16> {
+        Route::new(points.iter().map(|&(x, y)| Point::new(x, y))).unwrap()
+    }
+
+    fn conflicts(ego: &[(f32, f32)], other: &[(f32, f32)]) -> std::vec::Vec<Zone> {
+        let (ego, other) = (route(ego), route(other));
+        let paper = Footprint::PAPER;
+        let found = zones((&ego, paper), (&other, paper));
+        let swapped = zones((&other, paper), (&ego, paper));
+        let found: std::vec::Vec<Zone> = found.into_iter().flatten().collect();
+        for zone in swapped.into_iter().flatten() {
+            let same = |z: &Zone| {
+                let near =
+                    |a: Span, b: Span| (a.from - b.from).abs() < 1e-3 && (a.to - b.to).abs() < 1e-3;
+                let z = z.swapped();
+                near(z.ego, zone.ego)
+                    && near(z.other, zone.other)
+                    && near(z.lead, zone.lead)
+                    && z.kind == zone.kind
+            };
+            assert!(found.iter().any(same), "{zone:?} is not in {found:?}");
+        }
+        found
+    }
+
+    fn near(interval: Span, from: f32, to: f32) {
+        let good = (interval.from - from).abs() < 0.11 && (interval.to - to).abs() < 0.11;
+        assert!(good, "{interval:?} is not [{from}, {to}]");
+    }
+
+    #[test]
+    fn a_right_angle_has_one_zone_of_the_footprints_size() {
+        let zones = conflicts(&[(-30.0, 0.0), (30.0, 0.0)], &[(0.0, -40.0), (0.0, 40.0)]);
+        assert_eq!(zones.len(), 1);
+        assert_eq!(zones[0].kind, ConflictKind::Crossing);
+        near(zones[0].ego, 26.5, 33.5);
+        near(zones[0].other, 36.5, 43.5);
+        near(zones[0].lead, -17.0, -3.0);
+    }
+
+    #[test]
+    fn a_detour_that_crosses_twice_has_two_zones() {
+        let detour = [
+            (-30.0, 0.0),
+            (-20.0, 0.0),
+            (-20.0, 20.0),
+            (20.0, 20.0),
+            (20.0, 0.0),
+            (40.0, 0.0),
+        ];
+        let zones = conflicts(&[(-40.0, 10.0), (40.0, 10.0)], &detour);
+        assert_eq!(zones.len(), 2);
+        assert!(zones.iter().all(|z| z.kind == ConflictKind::Crossing));
+    }
+
+    #[test]
+    fn a_merge_shares_the_lane_to_its_end_and_beyond() {
+        let main = [(-50.0, 0.0), (50.0, 0.0)];
+        let ramp = [(-40.0, -30.0), (-10.0, -5.0), (0.0, 0.0), (30.0, 0.0)];
+        let zones = conflicts(&ramp, &main);
+        assert_eq!(zones.len(), 1);
+        assert_eq!(zones[0].kind, ConflictKind::Merging);
+        assert_eq!((zones[0].ego.to, zones[0].other.to), (FAR, FAR));
+        assert!(zones[0].lead.to - zones[0].lead.from < 13.0, "{zones:?}");
+        // The corner of the zone is in the band: the one who is in it first is ahead.
+        let corner = zones[0].ego.from - zones[0].other.from;
+        assert!(zones[0].lead.contains(corner));
+    }
+
+    #[test]
+    fn one_lane_from_the_start_is_following() {
+        let zones = conflicts(&[(0.0, 0.0), (80.0, 0.0)], &[(20.0, 0.0), (60.0, 0.0)]);
+        assert_eq!(zones[0].kind, ConflictKind::Following);
+        near(zones[0].lead, 15.0, 25.0);
+        assert_eq!(zones[0].other.from, -FAR);
+    }
+
+    #[test]
+    fn routes_apart_have_no_zone_and_head_on_ones_cross() {
+        let east = [(0.0, 0.0), (50.0, 0.0)];
+        assert!(conflicts(&east, &[(0.0, 2.2), (50.0, 2.2)]).is_empty());
+        assert_eq!(conflicts(&east, &[(0.0, 1.9), (50.0, 1.9)]).len(), 1);
+        let head_on = conflicts(&east, &[(50.0, 0.0), (0.0, 0.0)]);
+        assert_eq!(head_on[0].kind, ConflictKind::Crossing);
+        assert_eq!(
+            head_on[0].ego,
+            Span {
+                from: -FAR,
+                to: FAR
+            }
+        );
+    }
+
+    #[test]
+    fn a_route_that_begins_in_the_zone_has_been_in_it_for_ever() {
+        let zones = conflicts(&[(-1.0, 0.0), (30.0, 0.0)], &[(0.0, -40.0), (0.0, 40.0)]);
+        assert_eq!(zones[0].ego.from, -FAR);
+        near(zones[0].other, 36.5, 43.5);
+    }
+
+    #[test]
+    fn more_meetings_than_capacity_are_all_covered() {
+        let mut weave = std::vec::Vec::new();
+        for i in 0..6_u8 {
+            let x = 12.0 * f32::from(i);
+            let side = if i % 2 == 0 { 20.0 } else { -20.0 };
+            weave.extend([(x, -side), (x, side)]);
+        }
+        let zones = meetings_unchecked(&[(-20.0, 0.0), (90.0, 0.0)], &weave);
+        assert_eq!(zones.len(), MAX_ZONES);
+        for i in 0..6_u8 {
+            let s = 20.0 + 12.0 * f32::from(i);
+            assert!(zones.iter().any(|z| z.ego.contains(s)), "{s} in {zones:?}");
+        }
+    }
+
+    fn meetings_unchecked(ego: &[(f32, f32)], other: &[(f32, f32)]) -> std::vec::Vec<Zone> {
+        let paper = Footprint::PAPER;
+        let found = zones((&route(ego), paper), (&route(other), paper));
+        found.into_iter().flatten().collect()
+    }
+}

@@ -1,0 +1,162 @@
+//! The policy: from a pair of vehicles to the ego's acceleration and the other's, as it expects it.
+
+pub mod embedded;
+pub mod features;
+pub mod mlp;
+pub mod pair;
+pub mod svo;
+pub mod traffic;
+pub mod weights;
+
+pub use features::FeatureSet;
+pub use mlp::Mlp;
+pub use pair::{Crosser, Leader, Pair, Part, RightOfWay, VehicleState};
+pub use traffic::{NearbyVehicle, TrafficContext};
+pub use weights::{Perspective, Weights, WeightsError};
+
+#[cfg(doc)]
+use crate::policy::features::LIMIT;
+use crate::policy::features::MAX_FEATURES;
+
+/// Largest acceleration and braking (m/s²) that a policy proposes.
+pub const MAX_ACCELERATION: f32 = 3.0;
+
+/// A network that drives. Copying it copies no weights.
+#[derive(Clone, Copy, Debug)]
+pub struct Policy<'a> {
+    weights: Weights<'a>,
+}
+
+impl<'a> Policy<'a> {
+    /// The policy of a weights file, whose words it borrows.
+    ///
+    /// Cost: O(words). Never panics.
+    ///
+    /// # Errors
+    /// See [`Weights::parse`].
+    pub fn new(words: &'a [u32]) -> Result<Self, WeightsError> {
+        Weights::parse(words).map(Self::from)
+    }
+
+    /// The weights file.
+    ///
+    /// Cost: constant. Never panics.
+    #[must_use]
+    pub const fn weights(&self) -> &Weights<'a> {
+        &self.weights
+    }
+
+    /// What the policy proposes for the ego, and what it expects of the other, in m/s² within ± 3.
+    ///
+    /// Cost: the features, one pass through the network, two `tanh`. Never panics; finite and within
+    /// ± 3 for any `pair` whatsoever.
+    #[must_use]
+    pub fn act(&self, pair: &Pair) -> [f32; 2] {
+        let inputs = self.inputs(pair);
+        let inputs = inputs.get(..self.weights.features.count()).unwrap_or(&[]);
+        let [first, second, ..] = self.weights.network.forward(inputs);
+        let [first, second] = [first, second].map(|mean| MAX_ACCELERATION * libm::tanhf(mean));
+        if self.swaps(pair) {
+            [second, first]
+        } else {
+            [first, second]
+        }
+    }
+
+    /// The network's inputs for `pair`: the normalised features, each within ± [`LIMIT`], then zeros. Those of
+    /// a [`Perspective::Joint`] policy are the left-turner's, whoever the ego is.
+    ///
+    /// Cost: the features. Never panics; finite and within ± [`LIMIT`] for any `pair` whatsoever.
+    // Not inlined, because its stack is free again when the network needs its own.
+    #[must_use]
+    #[inline(never)]
+    pub fn inputs(&self, pair: &Pair) -> [f32; MAX_FEATURES] {
+        let mut inputs = if self.swaps(pair) {
+            self.weights.features.of(&pair.swapped())
+        } else {
+            self.weights.features.of(pair)
+        };
+        for (input, (centre, scale)) in inputs.iter_mut().zip(self.weights.normalisation()) {
+            *input = features::normalised(*input, centre, scale);
+        }
+        inputs
+    }
+
+    /// Whether the network sees the other first.
+    fn swaps(&self, pair: &Pair) -> bool {
+        self.weights.perspective == Perspective::Joint && pair.part == Part::Other
+    }
+}
+
+impl<'a> From<Weights<'a>> for Policy<'a> {
+    fn from(weights: Weights<'a>) -> Self {
+        Self { weights }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use crate::geometry::{Footprint, Point, Pose};
+    use crate::junction::conflict::ConflictKind;
+    use crate::policy::features::FeatureSet;
+    use crate::policy::pair::testing::pair;
+    use crate::policy::pair::{Crosser, Leader, RightOfWay, VehicleState};
+    use crate::policy::weights::testing::file;
+    use proptest::prelude::*;
+
+    #[test]
+    fn a_joint_policy_commands_the_same_two_vehicles_from_either_seat() {
+        let joint = file(FeatureSet::Raw, Perspective::Joint, 16);
+        let joint = Policy::new(&joint).unwrap();
+        let [left, other] = joint.act(&pair());
+        assert_eq!(joint.act(&pair().swapped()), [other, left]);
+        assert_ne!(left, other);
+    }
+
+    #[test]
+    fn an_ego_policy_sees_itself_first() {
+        let ego = file(FeatureSet::Route, Perspective::Ego, 16);
+        let ego = Policy::new(&ego).unwrap();
+        assert_eq!(ego.inputs(&pair())[1], (6.0 - 1.0) * 0.1);
+        assert_eq!(ego.inputs(&pair().swapped())[1], (8.0 - 1.0) * 0.1);
+    }
+
+    prop_compose! {
+        fn any_party()(bits in any::<[u32; 12]>(), follows in any::<bool>()) -> VehicleState {
+            let [x, y, dx, dy, ex, ey, speed, distance, length, width, gap, leads] = bits.map(f32::from_bits);
+            VehicleState {
+                pose: Pose { position: Point::new(x, y), direction: Point::new(dx, dy) },
+                exit: Point::new(ex, ey),
+                speed,
+                distance,
+                footprint: Footprint { length, width },
+                leader: follows.then_some(Leader { gap, speed: leads }),
+                crosser: follows.then_some(Crosser { distance: gap, its_distance: leads, its_speed: speed }),
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn whatever_the_bits_the_proposal_is_in_range(
+            ego in any_party(), other in any_party(), svo in any::<u32>(), left in any::<bool>(),
+        ) {
+            let pair = Pair {
+                ego,
+                other,
+                kind: ConflictKind::Merging,
+                right_of_way: RightOfWay::Ego,
+                part: if left { Part::Left } else { Part::Other },
+                last_svo: f32::from_bits(svo),
+            };
+            for features in FeatureSet::ALL {
+                let file = file(features, Perspective::Joint, 16);
+                for a in Policy::new(&file).unwrap().act(&pair) {
+                    prop_assert!(a.abs() <= MAX_ACCELERATION, "{a}");
+                }
+            }
+        }
+    }
+}

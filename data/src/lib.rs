@@ -1,0 +1,156 @@
+//! From recorded tracks to encounters: readers, site descriptions, extraction; and synthetic traffic.
+#![forbid(unsafe_code)]
+
+mod crossing;
+pub mod encounter;
+mod error;
+mod extract;
+mod files;
+pub mod generic;
+pub mod interaction;
+pub mod lanelet;
+mod motion;
+pub mod output;
+pub mod projection;
+mod site;
+mod summary;
+pub mod synthetic;
+mod table;
+mod tracks;
+
+pub use encounter::{Encounter, EncounterId, Manoeuvre, Participant, Role, Sample, SimRoute};
+pub use error::{DataError, Problem};
+pub use extract::{NEAR, extract};
+pub use site::{Files, Site};
+pub use summary::{Distribution, FileSummary, REST, Summary};
+pub use tracks::{RawState, Recording, STEP_MS, Track};
+
+use lanelet::Map;
+use rayon::prelude::*;
+use std::path::{Path, PathBuf};
+
+/// A site's recordings and the encounters in them.
+#[derive(Clone, Debug)]
+pub struct Dataset {
+    /// The site.
+    pub site: Site,
+    /// The recordings, ordered by number; a folder may lack some.
+    pub recordings: Vec<Recording>,
+    /// The encounters, ordered by file and, within it, by the recorded tracks.
+    pub encounters: Vec<Encounter>,
+    /// The site's map, if there is one beside the recordings.
+    pub map: Option<Map>,
+    /// Files that were passed over because they hold pedestrians.
+    pub passed_over: Vec<PathBuf>,
+}
+
+/// A share of a data set; what is there of it, if the folder lacks some files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Split {
+    /// To learn from.
+    Train,
+    /// To stop and to compare on.
+    Validation,
+    /// To judge by.
+    Test,
+    /// Everything.
+    All,
+}
+
+/// One round of leave-one-file-out: learn from `train`, judge on `held_out`.
+#[derive(Clone, Debug)]
+pub struct Fold<'d> {
+    /// The file that is left out.
+    pub file: u16,
+    /// The encounters of all other files.
+    pub train: Vec<&'d Encounter>,
+    /// The encounters of `file`.
+    pub held_out: Vec<&'d Encounter>,
+}
+
+impl Dataset {
+    /// The recordings of the site called `site` (see [`Site::named`]) in the folder `dir`.
+    ///
+    /// `dir` is the folder of the site's files, or one that holds it (also under
+    /// `recorded_trackfiles`, as INTERACTION is shipped), or a single file. In a
+    /// folder with `vehicle_tracks_NNN.csv` those are read ([`interaction`]); in
+    /// any other, all `*.csv` ([`generic`]), numbered by the digits at the end of
+    /// their names, or else in alphabetical order. The map is the `.osm` file of the
+    /// folder's name, beside it or under `maps`. The files are read and searched
+    /// in parallel; the result does not depend on the number of threads.
+    ///
+    /// # Errors
+    /// When the folder holds no recording, or a file is malformed.
+    pub fn load(dir: &Path, site: &str) -> Result<Self, DataError> {
+        let site = Site::named(site)?;
+        let found = files::find(dir, &site)?;
+        let recordings = found
+            .recordings
+            .par_iter()
+            .map(|file| file.read())
+            .collect::<Result<Vec<_>, _>>()?;
+        let map = found.map.as_deref().map(lanelet::read).transpose()?;
+        Ok(Self {
+            map,
+            passed_over: found.passed_over,
+            ..Self::new(site, recordings)
+        })
+    }
+
+    /// The encounters of `recordings` at `site`.
+    #[must_use]
+    pub fn new(site: Site, recordings: Vec<Recording>) -> Self {
+        let encounters = recordings
+            .par_iter()
+            .flat_map_iter(|recording| extract(&site, recording))
+            .collect();
+        Self {
+            site,
+            recordings,
+            encounters,
+            map: None,
+            passed_over: Vec::new(),
+        }
+    }
+
+    /// The same recordings, with the encounters of every two vehicles whose ways cross or merge
+    /// ([`Site::every_pair`]).
+    #[must_use]
+    pub fn every_pair(&self) -> Self {
+        let mut site = self.site.clone();
+        site.every_pair = true;
+        Self::new(site, self.recordings.clone())
+    }
+
+    /// The encounters of `split`, in order.
+    pub fn split(&self, split: Split) -> impl Iterator<Item = &Encounter> {
+        let files = &self.site.split;
+        self.encounters.iter().filter(move |encounter| {
+            let file = encounter.id.file;
+            let of = if files.test.contains(&file) {
+                Split::Test
+            } else if files.validation.contains(&file) {
+                Split::Validation
+            } else {
+                Split::Train
+            };
+            split == Split::All || split == of
+        })
+    }
+
+    /// Leave-one-file-out: a fold for every file that has encounters.
+    #[must_use]
+    pub fn folds(&self) -> Vec<Fold<'_>> {
+        let mut files: Vec<u16> = self.encounters.iter().map(|e| e.id.file).collect();
+        files.dedup();
+        let fold = |file| {
+            let (held_out, train) = self.encounters.iter().partition(|e| e.id.file == file);
+            Fold {
+                file,
+                train,
+                held_out,
+            }
+        };
+        files.into_iter().map(fold).collect()
+    }
+}

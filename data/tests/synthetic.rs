@@ -1,0 +1,102 @@
+//! Synthetic traffic: what is written is read back, and what people do is plausible.
+
+use cede_controller::separation::OrientedBox;
+use cede_controller::{Footprint, Point, Pose};
+use cede_data::{Dataset, Split, Track, synthetic};
+
+#[test]
+fn written_recordings_are_read_back_to_the_same_encounters() {
+    let folder = tempfile::tempdir().unwrap();
+    let written = synthetic::write(folder.path(), 60, 11).unwrap();
+    let mut read = Vec::new();
+    let mut test = 0;
+    for site in &written {
+        let description = folder.path().join(format!("{}.toml", site.name));
+        let data = Dataset::load(folder.path(), &description.to_string_lossy()).unwrap();
+        assert_eq!(data.encounters.len(), site.encounters);
+        let map = data.map.as_ref().expect("a map is beside the recordings");
+        assert!(map.lanes.len() >= 6 && map.lines.len() >= 6);
+        test += data.split(Split::Test).count();
+        read.extend(data.encounters);
+    }
+    read.sort_by_key(|encounter| encounter.id.file);
+    let made = Dataset::synthetic(60, 11);
+    assert_eq!(format!("{read:?}"), format!("{:?}", made.encounters));
+    assert_eq!(test, made.split(Split::Test).count());
+}
+
+#[test]
+fn people_drive_as_people_do() {
+    let data = Dataset::synthetic(150, 5);
+    let mut hard = 0;
+    let mut steps = 0;
+    for track in data
+        .recordings
+        .iter()
+        .flat_map(|recording| &recording.tracks)
+    {
+        let speeds: Vec<f64> = track.states.iter().map(|s| s.vx.hypot(s.vy)).collect();
+        for pair in speeds.windows(2) {
+            let acceleration = (pair[1] - pair[0]) / 0.1;
+            // Speeds have three decimals, and one that stops does so within a step.
+            assert!(
+                acceleration.abs() < 3.05,
+                "{acceleration} m/s² of track {}",
+                track.id
+            );
+            hard += usize::from(acceleration.abs() > 2.5);
+            steps += 1;
+        }
+        assert!(speeds.iter().all(|&v| v < 17.0));
+    }
+    assert!(
+        hard * 100 < steps,
+        "{hard} of {steps} steps beyond 2.5 m/s²"
+    );
+}
+
+#[test]
+fn nobody_is_hit_and_nobody_waits_for_ever() {
+    let data = Dataset::synthetic(300, 9);
+    for recording in &data.recordings {
+        for (i, a) in recording.tracks.iter().enumerate() {
+            for b in &recording.tracks[..i] {
+                assert_eq!(
+                    touch(a, b),
+                    None,
+                    "file {}: {} and {}",
+                    recording.file,
+                    a.id,
+                    b.id
+                );
+            }
+            let rest = a.states.iter().filter(|s| s.vx.hypot(s.vy) < 0.1).count();
+            assert!(
+                rest < 900,
+                "file {}: {} rests for {rest} steps",
+                recording.file,
+                a.id
+            );
+        }
+    }
+}
+
+/// The time (ms) at which the two overlap first.
+fn touch(a: &Track, b: &Track) -> Option<u64> {
+    let begin = a.first_ms.max(b.first_ms);
+    let end = a.last_ms().min(b.last_ms());
+    (begin..=end)
+        .step_by(100)
+        .find(|&time| covered(a, time).overlaps(&covered(b, time)))
+}
+
+fn covered(track: &Track, time: u64) -> OrientedBox {
+    let state = &track.states[((time - track.first_ms) / 100) as usize];
+    let (sin, cos) = state.heading.sin_cos();
+    let pose = Pose {
+        position: Point::new(state.x as f32, state.y as f32),
+        direction: Point::new(cos as f32, sin as f32),
+    };
+    let (length, width) = (track.length as f32, track.width as f32);
+    OrientedBox::new(pose, Footprint { length, width })
+}

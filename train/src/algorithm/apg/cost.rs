@@ -1,0 +1,144 @@
+//! What it costs to drive unlike the recorded humans, and its derivatives.
+
+use cede_controller::Footprint;
+use cede_controller::kinematics::State;
+use cede_controller::separation::OrientedBox;
+use cede_data::{Encounter, Role};
+use serde::{Deserialize, Serialize};
+
+/// What it costs, a step, to drive unlike the recorded humans.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Cost {
+    /// Metres up to which an error in position costs half its square; beyond, it costs in proportion.
+    pub huber: f32,
+    /// Weight of the squared error in speed, in s².
+    pub speed: f32,
+    /// Weight of the squared error of what each expects of the other's acceleration, in s⁴.
+    pub expectation: f32,
+    /// Weight of arriving out of the recorded order: metres that the first is short of its conflict
+    /// point, times metres that the second is too near to its own.
+    pub order: f32,
+    /// Weight of the squared shortfall of the distance between the footprints.
+    pub contact: f32,
+    /// Metres between the footprints below which closeness costs.
+    pub gap: f32,
+}
+
+impl Default for Cost {
+    fn default() -> Self {
+        Self {
+            huber: 1.0,
+            speed: 0.3,
+            expectation: 0.02,
+            order: 10.0,
+            contact: 20.0,
+            gap: 0.5,
+        }
+    }
+}
+
+/// Metres by which the second vehicle should be short of its conflict point when the first arrives,
+/// and the most that the first one's own shortfall counts.
+const ORDER_MARGIN: f32 = 2.0;
+/// Steps past the recorded end up to which the order counts.
+const ORDER_OVERTIME: usize = 20;
+/// Footprints whose centres are farther apart (m) cannot be near contact.
+const OUT_OF_REACH: f32 = 7.0;
+
+/// Derivatives of a cost with respect to the states (s, v) of both vehicles.
+pub(crate) type ByStates = [[f32; 2]; 2];
+
+impl Cost {
+    /// The cost of being in `states` at `step` of `encounter`; adds its derivatives times `share` to `by`.
+    pub(crate) fn of(
+        &self,
+        encounter: &Encounter,
+        step: usize,
+        states: [State; 2],
+        share: f32,
+        by: &mut ByStates,
+    ) -> f32 {
+        let mut own = ByStates::default();
+        let total = self.imitation(encounter, step, states, &mut own)
+            + self.disorder(encounter, step, states, &mut own)
+            + self.closeness(encounter, states, &mut own);
+        for (by, own) in by.iter_mut().flatten().zip(own.iter().flatten()) {
+            *by += share * own;
+        }
+        total
+    }
+
+    /// Distance from the record in position and speed, while it lasts.
+    fn imitation(
+        &self,
+        encounter: &Encounter,
+        step: usize,
+        states: [State; 2],
+        by: &mut ByStates,
+    ) -> f32 {
+        let mut total = 0.0;
+        for i in 0..2 {
+            let Some(record) = encounter.participants[i].record.get(step) else {
+                continue;
+            };
+            let (ahead, faster) = (states[i].s - record.s, states[i].v - record.v);
+            let clamped = ahead.clamp(-self.huber, self.huber);
+            total += clamped * (ahead - 0.5 * clamped) + self.speed * faster * faster;
+            by[i][0] += clamped;
+            by[i][1] += 2.0 * self.speed * faster;
+        }
+        total
+    }
+
+    /// The vehicle that was first in the record has not arrived, and the other is about to.
+    fn disorder(
+        &self,
+        encounter: &Encounter,
+        step: usize,
+        states: [State; 2],
+        by: &mut ByStates,
+    ) -> f32 {
+        if self.order == 0.0 || step > encounter.steps as usize + ORDER_OVERTIME {
+            return 0.0;
+        }
+        let (first, second) = match encounter.first {
+            Role::Left => (0, 1),
+            Role::Other => (1, 0),
+        };
+        let distance = |i: usize| encounter.participants[i].conflict_s - states[i].s;
+        let (late, near) = (distance(first), ORDER_MARGIN - distance(second));
+        if late <= 0.0 || near <= 0.0 {
+            return 0.0;
+        }
+        let counted = late.min(ORDER_MARGIN);
+        by[second][0] += self.order * counted;
+        if late < ORDER_MARGIN {
+            by[first][0] -= self.order * near;
+        }
+        self.order * counted * near
+    }
+
+    /// The footprints are closer to each other than they should be.
+    fn closeness(&self, encounter: &Encounter, states: [State; 2], by: &mut ByStates) -> f32 {
+        let area = |i: usize, ds: f32| {
+            let pose = encounter.participants[i].route.pose(states[i].s + ds);
+            OrientedBox::new(pose, Footprint::PAPER)
+        };
+        let (a, b) = (area(0, 0.0), area(1, 0.0));
+        let near = a.centre.distance(b.centre) < OUT_OF_REACH;
+        let short = self.gap - a.separation(&b);
+        if self.contact == 0.0 || !near || short <= 0.0 {
+            return 0.0;
+        }
+        let h = 0.05;
+        let slopes = [
+            area(0, h).separation(&b) - area(0, -h).separation(&b),
+            a.separation(&area(1, h)) - a.separation(&area(1, -h)),
+        ];
+        for i in 0..2 {
+            by[i][0] -= self.contact * 2.0 * short * slopes[i] / (2.0 * h);
+        }
+        self.contact * short * short
+    }
+}

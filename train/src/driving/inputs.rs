@@ -1,0 +1,89 @@
+//! A network's inputs: the controller's features, normalised with constants that travel with the weights.
+
+use cede_controller::policy::features::LIMIT;
+use cede_controller::{FeatureSet, Pair};
+use serde::{Deserialize, Serialize};
+
+/// A feature set with the centre and the scale of each feature.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Inputs {
+    #[serde(with = "crate::driving::inputs::by_name")]
+    features: FeatureSet,
+    /// Centre of each feature.
+    pub centres: Vec<f32>,
+    /// Scale of each feature: the network sees (feature − centre) · scale, within ± [`LIMIT`].
+    pub scales: Vec<f32>,
+}
+
+/// Deviations below this count as constant features: they are left unscaled.
+const CONSTANT: f64 = 1e-3;
+
+impl Inputs {
+    /// Normalisation to mean 0 and standard deviation 1 over `pairs`.
+    #[must_use]
+    pub fn fit<'p>(features: FeatureSet, pairs: impl IntoIterator<Item = &'p Pair>) -> Self {
+        let count = features.count();
+        let (mut n, mut sums, mut squares) = (0.0, vec![0.0; count], vec![0.0; count]);
+        for pair in pairs {
+            n += 1.0;
+            for (i, x) in features.of(pair)[..count].iter().enumerate() {
+                sums[i] += f64::from(*x);
+                squares[i] += f64::from(*x) * f64::from(*x);
+            }
+        }
+        let n: f64 = if n > 0.0 { n } else { 1.0 };
+        let means: Vec<f64> = sums.iter().map(|s| s / n).collect();
+        let scale = |(square, mean): (&f64, &f64)| {
+            let deviation = (square / n - mean * mean).max(0.0).sqrt();
+            if deviation > CONSTANT {
+                (1.0 / deviation) as f32
+            } else {
+                1.0
+            }
+        };
+        Self {
+            features,
+            scales: squares.iter().zip(&means).map(scale).collect(),
+            centres: means.iter().map(|m| *m as f32).collect(),
+        }
+    }
+
+    /// What the network is told.
+    #[must_use]
+    pub fn features(&self) -> FeatureSet {
+        self.features
+    }
+
+    /// Appends the network's inputs for `pair` to `rows`.
+    pub fn append(&self, pair: &Pair, rows: &mut Vec<f32>) {
+        let features = self.features.of(pair);
+        let constants = self.centres.iter().zip(&self.scales);
+        rows.extend(features.iter().zip(constants).map(|(x, (c, s))| {
+            let x = (x - c) * s;
+            if x > LIMIT {
+                LIMIT
+            } else if x >= -LIMIT {
+                x
+            } else {
+                -LIMIT
+            }
+        }));
+    }
+}
+
+/// A feature set is written as its name.
+pub(crate) mod by_name {
+    use cede_controller::FeatureSet;
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    #[allow(clippy::trivially_copy_pass_by_ref)] // serde's signature
+    pub(crate) fn serialize<S: Serializer>(set: &FeatureSet, to: S) -> Result<S::Ok, S::Error> {
+        to.serialize_str(set.name())
+    }
+
+    pub(crate) fn deserialize<'d, D: Deserializer<'d>>(from: D) -> Result<FeatureSet, D::Error> {
+        let name = String::deserialize(from)?;
+        let known = FeatureSet::ALL.into_iter().find(|set| set.name() == name);
+        known.ok_or_else(|| serde::de::Error::custom(format!("no feature set is called {name}")))
+    }
+}

@@ -1,0 +1,177 @@
+//! Which settings a training can begin with.
+
+use crate::{apg, bc, run, sac};
+use cede_controller::policy::mlp::{LANES, MAX_WIDTH};
+
+/// A setting that no training can begin with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{name} must be {range}")]
+pub struct OutOfRange {
+    /// The setting.
+    pub name: &'static str,
+    /// What it must be.
+    pub range: &'static str,
+}
+
+/// A setting, whether it is in its range, and the range in words.
+type Check = (&'static str, bool, &'static str);
+
+const COUNT: &str = "1 to 1,000,000";
+const HORIZON: &str = "1 to 1,000";
+const POSITIVE: &str = "above 0";
+const NOT_NEGATIVE: &str = "0 or more";
+const SHARE: &str = "0 to 1";
+
+fn count(name: &'static str, n: usize) -> Check {
+    (name, (1..=1_000_000).contains(&n), COUNT)
+}
+
+fn positive(name: &'static str, x: f32) -> Check {
+    (name, x > 0.0 && x.is_finite(), POSITIVE)
+}
+
+fn not_negative(name: &'static str, x: f32) -> Check {
+    (name, x >= 0.0 && x.is_finite(), NOT_NEGATIVE)
+}
+
+fn share(name: &'static str, x: f32) -> Check {
+    (name, (0.0..=1.0).contains(&x), SHARE)
+}
+
+fn width(width: usize) -> Check {
+    let fits = width.is_multiple_of(LANES) && (LANES..=MAX_WIDTH).contains(&width);
+    ("width", fits, "a multiple of 16 up to 128")
+}
+
+fn of_bc(s: &bc::Settings) -> Vec<Check> {
+    vec![
+        width(s.width),
+        count("batch", s.batch),
+        positive("rate", s.rate),
+    ]
+}
+
+fn of_sac(s: &sac::Settings) -> Vec<Check> {
+    let rates = &s.rates;
+    vec![
+        width(s.width),
+        count("batch", s.batch),
+        count("parallel", s.parallel),
+        count("steps_per_update", s.steps_per_update as usize),
+        (
+            "buffer",
+            (1..=10_000_000).contains(&s.buffer),
+            "1 to 10,000,000",
+        ),
+        (
+            "buffer_minimum",
+            s.buffer_minimum <= s.buffer,
+            "no more than buffer",
+        ),
+        positive("rates.policy", rates.policy),
+        positive("rates.critic", rates.critic),
+        positive("rates.temperature", rates.temperature),
+        share("rates.discount", rates.discount),
+        share("rates.softness", rates.softness),
+        share("rates.averaging", rates.averaging),
+        (
+            "rates.target_entropy",
+            rates.target_entropy.is_finite(),
+            "a number",
+        ),
+        positive("rates.initial_temperature", rates.initial_temperature),
+    ]
+}
+
+fn of_apg(s: &apg::Settings) -> Vec<Check> {
+    let (cost, refinement, claims) = (&s.cost, &s.refinement, &s.claims);
+    let joint = s.width.saturating_mul(s.members as usize);
+    let updates = |name, n| (name, n <= 10_000_000, "0 to 10,000,000");
+    let horizon = |name, n| (name, (1..=1_000).contains(&n), HORIZON);
+    vec![
+        width(s.width),
+        (
+            "members",
+            (1..=MAX_WIDTH).contains(&joint),
+            "1 or more, and times width at most 128",
+        ),
+        updates("updates", s.updates),
+        updates("refinement.updates", s.refinement.updates),
+        count("batch", s.batch),
+        positive("rate", s.rate),
+        horizon("horizon", s.horizon),
+        horizon("last_horizon", s.last_horizon),
+        share("from_start", s.from_start),
+        share("carry_on", s.carry_on),
+        not_negative("position_jitter", s.position_jitter),
+        not_negative("speed_jitter", s.speed_jitter),
+        positive("clip", s.clip),
+        positive("cost.huber", cost.huber),
+        not_negative("cost.speed", cost.speed),
+        not_negative("cost.expectation", cost.expectation),
+        not_negative("cost.order", cost.order),
+        not_negative("cost.contact", cost.contact),
+        not_negative("cost.gap", cost.gap),
+        positive("refinement.rate", refinement.rate),
+        (
+            "refinement.places",
+            refinement.places <= 1_000_000,
+            "0 to 1,000,000",
+        ),
+        not_negative("refinement.hold", refinement.hold),
+        not_negative("claims.weight", claims.weight),
+        not_negative("claims.margin", claims.margin),
+        not_negative("claims.slope_margin", claims.slope_margin),
+        ("claims.fresh", claims.fresh <= 10_000, "0 to 10,000"),
+        ("claims.hard", claims.hard <= 10_000, "0 to 10,000"),
+    ]
+}
+
+impl run::Settings {
+    /// Whether a training can begin with them.
+    ///
+    /// # Errors
+    /// The first that is out of its range.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        let checks = match self {
+            Self::Bc(settings) => of_bc(settings),
+            Self::Sac(settings) => of_sac(settings),
+            Self::Apg(settings) => of_apg(settings),
+        };
+        match checks.into_iter().find(|(_, holds, _)| !holds) {
+            Some((name, _, range)) => Err(OutOfRange { name, range }),
+            None => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::run::Algorithm;
+
+    #[test]
+    fn what_trainings_begin_with_is_in_range() {
+        for algorithm in Algorithm::ALL {
+            assert_eq!(algorithm.settings().check(), Ok(()));
+            assert_eq!(algorithm.reproduction().check(), Ok(()));
+        }
+    }
+
+    #[test]
+    fn what_no_training_can_begin_with_is_named() {
+        for (algorithm, set, name) in [
+            (Algorithm::Bc, "batch = 0", "batch"),
+            (Algorithm::Bc, "rate = nan", "rate"),
+            (Algorithm::Sac, "width = 100", "width"),
+            (Algorithm::Sac, "buffer = 10", "buffer_minimum"),
+            (Algorithm::Apg, "width = 100000000000", "width"),
+            (Algorithm::Apg, "members = 0", "members"),
+            (Algorithm::Apg, "members = 3", "members"),
+            (Algorithm::Apg, "horizon = 0", "horizon"),
+            (Algorithm::Apg, "cost.gap = -1", "cost.gap"),
+        ] {
+            let settings = algorithm.settings().with(&set.parse().unwrap()).unwrap();
+            assert_eq!(settings.check().unwrap_err().name, name);
+        }
+    }
+}
