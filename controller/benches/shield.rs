@@ -1,6 +1,6 @@
 //! The shield alone and the whole decision, among 1, 4 and 8 others; at the end, the worst of 10⁶ random observations.
 
-use cede_controller::weights::Draft;
+use cede_controller::policy::weights::Draft;
 use cede_controller::{
     Contract, Controller, FeatureSet, Footprint, Mlp, Observation, Part, Path, Perspective, Point,
     Policy, Route, Scene, Shield, Vehicle,

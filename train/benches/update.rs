@@ -6,9 +6,9 @@
 #[path = "../../sim/benches/processor/mod.rs"]
 mod processor;
 
-use cede_train::learner::{Learner, Rates};
+use cede_train::algorithm::sac::learner::{Learner, Rates};
+use cede_train::driving::replay::Batch;
 use cede_train::nn::matmul::{Into, Matrix, multiply};
-use cede_train::replay::Batch;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use processor::CpuTime;
 use rand::{RngExt, SeedableRng};

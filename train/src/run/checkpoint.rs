@@ -4,8 +4,8 @@
 //! (postcard), and a CRC-32 of all that. A file that is damaged, or that belongs
 //! to other data, is refused; writing replaces the last file only when the new one is whole.
 
-use crate::run::curve::Curve;
 use crate::run::Progress;
+use crate::run::curve::Curve;
 use cede_data::output;
 use cede_data::output::OutputError;
 use crc::{CRC_32_ISO_HDLC, Crc};

@@ -1,5 +1,11 @@
 //! A training run of any algorithm, as the command line sees it.
 
+pub mod checkpoint;
+pub mod curve;
+pub mod log;
+pub mod provenance;
+mod ranges;
+
 use crate::algorithm::apg::cost::Cost;
 use crate::algorithm::apg::{self, Apg, Refinement};
 use crate::algorithm::bc::{self, Bc};

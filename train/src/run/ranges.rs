@@ -1,6 +1,7 @@
 //! Which settings a training can begin with.
 
-use crate::{apg, bc, run, sac};
+use crate::algorithm::{apg, bc, sac};
+use crate::run;
 use cede_controller::policy::mlp::{LANES, MAX_WIDTH};
 
 /// A setting that no training can begin with.

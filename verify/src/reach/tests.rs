@@ -1,9 +1,10 @@
 use super::*;
 use crate::policy::Subject;
 use cede_controller::kinematics::{State, advance};
+use cede_controller::policy::embedded;
 use cede_controller::policy::weights::Draft;
 use cede_controller::{
-    Contract, Controller, Observation, Part, Point, Policy, Pose, Vehicle, Weights, embedded,
+    Contract, Controller, Observation, Part, Point, Policy, Pose, Vehicle, Weights,
 };
 use cede_sim::property::Right;
 use rand::{RngExt, SeedableRng};

@@ -1,7 +1,7 @@
 //! Cede's learner.
 
 use crate::{ACTIONS, FEATURES, Update, batch};
-use cede_train::learner::{Learner, Rates};
+use cede_train::algorithm::sac::learner::{Learner, Rates};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 

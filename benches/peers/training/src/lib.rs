@@ -4,7 +4,7 @@ pub mod burn;
 pub mod candle;
 pub mod cede;
 
-use cede_train::replay::Batch;
+use cede_train::driving::replay::Batch;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
