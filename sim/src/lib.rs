@@ -15,13 +15,11 @@ pub mod kinematics;
 pub mod metrics;
 pub mod output;
 pub mod overlap;
-pub mod property;
 pub mod reward;
 pub mod sight;
 pub mod statistics;
 pub mod synthetic;
 pub mod transparency;
-pub mod weights;
 
 pub use data::Dataset;
 pub use driver::{Driver, DriverFactory, State, View};

@@ -2,7 +2,7 @@
 
 use cede_controller::weights::Draft;
 use cede_controller::{FeatureSet, Mlp, Pair, Part, Perspective, Policy, Weights};
-use cede_exchange::onnx;
+use cede_formats::onnx;
 use cede_sim::{Dataset, Sight};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -76,7 +76,7 @@ fn the_verifier_reads_the_export_as_the_controller_drives_it() {
     for words in policies() {
         let policy = Policy::new(&words).unwrap();
         let bytes = onnx::write(policy.weights());
-        let network = cede_verify::network::onnx::read(&bytes).unwrap();
+        let network = cede_nnv_check::onnx::read(&bytes).unwrap();
         for pair in pairs.iter().step_by(10) {
             let raw = features(policy.weights(), pair);
             let raw: Vec<f64> = raw.into_iter().map(f64::from).collect();

@@ -2,7 +2,7 @@
 
 use cede_controller::weights::Draft;
 use cede_controller::{Policy, Weights, embedded};
-use cede_sim::property::{Claim, Place, Properties, Setting, StateProperty};
+use cede_formats::property::{Claim, Place, Properties, Setting, StateProperty};
 use cede_sim::{Dataset, Sight};
 use cede_train::run::{Algorithm, Lessons, Run};
 use cede_verify::policy::{Finding, Subject};
@@ -65,7 +65,7 @@ fn unclaimed(seed: u64) -> Vec<u32> {
 fn breaks(words: &[u32], claim: Claim, setting: &Setting, place: Place) -> bool {
     let policy = Policy::new(words).unwrap();
     let a = |place: Place| f64::from(policy.act(&setting.pair(place))[0]);
-    let slope = |variable: cede_sim::property::Variable| {
+    let slope = |variable: cede_formats::property::Variable| {
         let mut moved = place;
         moved[variable.index()] += 0.05;
         (a(moved) - a(place)) / 0.05

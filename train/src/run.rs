@@ -7,7 +7,7 @@ use crate::episodes::{Course, Reward};
 use crate::learner::Rates;
 use crate::pilot::Pilot;
 use crate::sac::{self, Sac};
-use cede_sim::property::StateProperty;
+use cede_formats::property::StateProperty;
 use cede_sim::{Encounter, Sight};
 use serde::{Deserialize, Serialize};
 

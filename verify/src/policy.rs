@@ -19,9 +19,9 @@ mod search;
 pub(crate) use response::Response;
 pub use search::{Finding, Settled};
 
-use crate::network::{Activation, Feature, InputBox, Layer, Matrix, Network};
 use cede_controller::{FeatureSet, Perspective, Weights};
-use cede_sim::property::Setting;
+use cede_formats::property::Setting;
+use cede_nnv_check::{Activation, Feature, InputBox, Layer, Matrix, Network};
 use features::Enclosed;
 
 /// A policy as the verifier sees it: the network that gives the ego's mean, and its features.

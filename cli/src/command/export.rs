@@ -2,7 +2,7 @@
 
 use crate::drivers;
 use crate::failure::Failure;
-use cede_exchange::{onnx, safetensors};
+use cede_formats::{onnx, safetensors};
 use cede_sim::output;
 use clap::ValueEnum;
 use std::path::PathBuf;

@@ -3,9 +3,10 @@
 use crate::failure::Failure;
 use cede_controller::features::LIMIT;
 use cede_controller::{FeatureSet, Perspective, Policy};
-use cede_exchange::description::{features_named, perspective_name, perspective_named};
-use cede_exchange::onnx::{self, ImportError, Told};
-use cede_sim::{output, weights};
+use cede_formats::cede;
+use cede_formats::description::{features_named, perspective_name, perspective_named};
+use cede_formats::onnx::{self, ImportError, Told};
+use cede_sim::output;
 use std::path::PathBuf;
 
 /// The graph: Sub, Add, Mul, Div and one Clip to ± a number (all optional), one to three hidden layers of at most
@@ -52,7 +53,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let words = onnx::read(&bytes, told)
         .map_err(|error| Failure::input(format!("cannot use {path}: {error}"), mend(&error)))?;
     let policy =
-        weights::keep(&words).map_err(|error| Failure::input(error, "report this as a bug"))?;
+        cede::keep(&words).map_err(|error| Failure::input(error, "report this as a bug"))?;
     let mut file: Vec<u8> = Vec::with_capacity(4 * words.len());
     file.extend(words.iter().flat_map(|word| word.to_le_bytes()));
     output::write(&args.out, |out| out.write_all(&file))?;

@@ -7,10 +7,10 @@
 
 use super::Subject;
 use super::interval::{Interval, STATE};
-use crate::network::check::{Bounds, CheckError};
-use crate::network::proof::{Proof, Split};
-use crate::network::{Activation, InputBox};
-use cede_sim::property::Setting;
+use cede_formats::property::Setting;
+use cede_nnv_check::check::{Bounds, CheckError};
+use cede_nnv_check::proof::{Proof, Split};
+use cede_nnv_check::{Activation, InputBox};
 use rayon::prelude::*;
 
 /// How often a leaf may be halved in the attempt to confirm it.

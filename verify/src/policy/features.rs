@@ -8,11 +8,11 @@
 //! controller's code).
 
 use super::interval::{Dual, Interval, STATE};
-use crate::network::{Feature, InputBox};
 use cede_controller::features::{CREEP, HORIZON, LIMIT};
 use cede_controller::svo::MIN_DISTANCE;
 use cede_controller::{ConflictKind, FeatureSet, RightOfWay};
-use cede_sim::property::Setting;
+use cede_formats::property::Setting;
+use cede_nnv_check::{Feature, InputBox};
 
 /// Relative allowance for the `f32` rounding of a feature.
 const SINGLE: f64 = 16.0 * (f32::EPSILON as f64) * 0.5;

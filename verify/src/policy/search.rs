@@ -4,12 +4,12 @@ use super::Subject;
 use super::check::slopes_hold;
 use super::gradient::gradient;
 use super::interval::Interval;
-use crate::network::{
-    Bounder, Feature, Halfspace, InputBox, Network, check,
-    proof::{Cell, Proof, Split},
-};
 use cede_controller::Policy;
-use cede_sim::property::{Claim, Place, Setting, StateProperty, Variable};
+use cede_formats::property::{Claim, Place, Setting, StateProperty, Variable};
+use cede_nnv::{Bounder, Worker};
+use cede_nnv_check::check::{self, CheckError};
+use cede_nnv_check::proof::{Cell, Proof, Split};
+use cede_nnv_check::{Feature, Halfspace, InputBox, Network, Query};
 use rayon::prelude::*;
 use std::time::Instant;
 
@@ -224,7 +224,7 @@ impl<'a> Task<'a> {
         (finding, proof)
     }
 
-    fn step(&self, worker: &mut crate::network::Worker<'_>, mut node: Node) -> Step {
+    fn step(&self, worker: &mut Worker<'_>, mut node: Node) -> Step {
         let enclosed = self.subject.features(&node.region, &self.setting);
         let features: Vec<Feature> = enclosed.iter().map(|e| e.feature.clone()).collect();
         worker.tighten(&node.region, &features, &mut node.bounds);
@@ -288,13 +288,13 @@ impl<'a> Task<'a> {
         f64::from(Policy::from(self.subject.weights).act(&self.setting.pair(state))[0])
     }
 
-    fn check(&self, proof: &Proof) -> Result<usize, check::CheckError> {
+    fn check(&self, proof: &Proof) -> Result<usize, CheckError> {
         let region = region(self.property);
         let Some(atom) = &self.atom else {
             let holds = |slopes| slope_holds(self.property.claim, slopes);
             return slopes_hold(self.subject, &self.setting, region, holds, proof);
         };
-        let query = crate::network::Query {
+        let query = Query {
             region,
             unsafe_set: vec![vec![atom.clone()]],
         };

@@ -4,9 +4,9 @@ use cede_controller::weights::Draft;
 use cede_controller::{
     Contract, Controller, Observation, Part, Point, Policy, Pose, Vehicle, Weights, embedded,
 };
+use cede_formats::property::Right;
 use cede_sim::State;
 use cede_sim::kinematics::advance;
-use cede_sim::property::Right;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 

@@ -4,7 +4,8 @@ use super::Trained;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::training::{Identity, Training};
-use cede_sim::{Encounter, output, weights};
+use cede_formats::cede;
+use cede_sim::{Encounter, output};
 use cede_train::curve::{Curve, Panel};
 use cede_train::episodes::Course;
 use cede_train::provenance::{Provenance, data_hash};
@@ -95,7 +96,7 @@ impl Job<'_> {
         let curve = std::mem::take(&mut training.curve);
         write(&file, &words, &curve)?;
         training.clean();
-        let policy = weights::keep(&words).map_err(|error| self.diverged(&error))?;
+        let policy = cede::keep(&words).map_err(|error| self.diverged(&error))?;
         Ok(Trained { policy, curve })
     }
 
@@ -106,7 +107,7 @@ impl Job<'_> {
 
 /// What an earlier time left, if it is the same training.
 fn finished(file: &Path, provenance: &Provenance) -> Option<Trained> {
-    let policy = weights::load(file).ok()?;
+    let policy = cede::load(file).ok()?;
     let curve = serde_json::from_slice(&std::fs::read(curve_file(file)).ok()?).ok()?;
     let same = policy.weights().provenance() == provenance.hash();
     same.then_some(Trained { policy, curve })

@@ -1,8 +1,9 @@
 //! `cede verify network`.
 
 use crate::failure::Failure;
+use cede_nnv::{self as verifier, Answer, Branching, Report, Settings};
+use cede_nnv_check::{self as trusted, Certificate};
 use cede_sim::output;
-use cede_verify::network::{self as verifier, Answer, Branching, Certificate, Report, Settings};
 use clap::{Args, ValueEnum};
 use miette::{IntoDiagnostic, WrapErr, miette};
 use std::io::Write as _;
@@ -104,7 +105,7 @@ impl Network {
         Ok(())
     }
 
-    fn told(&self, network: &verifier::Network, report: &Report, seconds: f64) -> String {
+    fn told(&self, network: &trusted::Network, report: &Report, seconds: f64) -> String {
         let word = word(&report.answer);
         let witness = match &report.answer {
             Answer::Sat(x) => Some((x, network.run(x).values)),
@@ -148,7 +149,7 @@ fn word(answer: &Answer) -> &'static str {
 pub(crate) fn read(
     onnx: &Path,
     vnnlib: &Path,
-) -> Result<(verifier::Network, verifier::Property), Failure> {
+) -> Result<(trusted::Network, trusted::Property), Failure> {
     let named = |path: &Path, help: &'static str| {
         let place = path.display().to_string();
         move |error: miette::Report| {
@@ -156,10 +157,10 @@ pub(crate) fn read(
         }
     };
     let bytes = std::fs::read(onnx).into_diagnostic();
-    let network = bytes.and_then(|bytes| verifier::onnx::read(&bytes).into_diagnostic());
+    let network = bytes.and_then(|bytes| trusted::onnx::read(&bytes).into_diagnostic());
     let network = network.map_err(named(onnx, "--onnx: a feed-forward network in ONNX"))?;
     let text = std::fs::read_to_string(vnnlib).into_diagnostic();
-    let property = text.and_then(|text| verifier::vnnlib::read(&text).into_diagnostic());
+    let property = text.and_then(|text| trusted::vnnlib::read(&text).into_diagnostic());
     let property = property
         .wrap_err("VNN-LIB")
         .map_err(named(vnnlib, "--vnnlib: a property in VNN-LIB 1.0"))?;

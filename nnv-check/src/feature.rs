@@ -1,0 +1,37 @@
+//! What stands before a network's inputs, for whoever searches over something other than these.
+
+use super::property::InputBox;
+use super::rounding::gamma;
+
+/// An input of the network as a linear function of the variables of a box:
+/// |input − (constant + slopes · x)| ≤ radius everywhere on it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Feature {
+    /// The constant.
+    pub constant: f64,
+    /// One slope for each variable.
+    pub slopes: Vec<f64>,
+    /// How far the input may be from the linear function.
+    pub radius: f64,
+}
+
+impl Feature {
+    /// Range of the linear part on the box, rounding included.
+    pub fn linear_range(&self, region: &InputBox) -> (f64, f64) {
+        let (mut l, mut u, mut size) = (self.constant, self.constant, self.constant.abs());
+        for ((s, lo), hi) in self.slopes.iter().zip(&region.lower).zip(&region.upper) {
+            let (a, b) = (s * lo, s * hi);
+            l += a.min(b);
+            u += a.max(b);
+            size += a.abs().max(b.abs());
+        }
+        let slack = gamma(self.slopes.len() + 4) * size;
+        (l - slack, u + slack)
+    }
+
+    /// Largest absolute value of the input on the box.
+    pub fn magnitude(&self, region: &InputBox) -> f64 {
+        let (l, u) = self.linear_range(region);
+        (l.abs().max(u.abs()) + self.radius) * (1.0 + 1e-12)
+    }
+}
