@@ -1,49 +1,23 @@
-//! Reads feed-forward networks from ONNX files into the normal form.
+//! Networks from ONNX files.
 //!
-//! Understood: Gemm, MatMul, Add, Sub, Mul and Div with constants, Relu, Tanh, Clip, Flatten, Reshape,
-//! Transpose, Squeeze, Unsqueeze, Identity, Constant, Concat; `f32` and `f64` tensors, raw or
-//! typed. A symbolic dimension (a batch) counts as 1. Weights keep their exact values: where two
-//! affine maps in a row cannot be merged without rounding, they stay two layers.
+//! The graph is read by [`cede_formats::onnx::graph`], which lists the operators that are
+//! understood. Weights keep their exact values: where two affine maps in a row cannot be merged
+//! without rounding, they stay two layers.
 
 mod affine;
-mod operators;
-mod tensor;
 
-use super::model::{ModelError, Network};
-use affine::Builder;
-use cede_formats::onnx::proto;
-use operators::Value;
-use prost::Message;
-use std::collections::HashMap;
-use tensor::Shape;
+use crate::model::{Activation, ModelError, Network};
+use crate::rounding::exact_product;
+use affine::{Builder, Variable};
+use cede_formats::onnx::graph::{self, Graph, GraphError, Operation, Step};
 
 /// Why a network cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum OnnxError {
-    /// Not an ONNX file, or a damaged one.
-    #[error("not an ONNX model: {0}")]
-    Encoding(String),
-    /// The file has no graph, no input or not exactly one output.
-    #[error("{0}")]
-    Graph(String),
-    /// A tensor that cannot be read.
-    #[error("tensor {name:?}: {what}")]
-    Tensor {
-        /// The tensor's name.
-        name: String,
-        /// What is wrong with it.
-        what: String,
-    },
-    /// The first operator that is not supported, or that is used in a way that is not.
-    #[error("node {node:?}, operator {operator}: {what}")]
-    Operator {
-        /// The node's name, or the name of what it gives.
-        node: String,
-        /// The operator's type.
-        operator: String,
-        /// What is not supported.
-        what: String,
-    },
+    /// The graph cannot be read, or is more than a chain of layers.
+    #[error(transparent)]
+    Graph(#[from] GraphError),
     /// The layers do not fit together.
     #[error(transparent)]
     Model(#[from] ModelError),
@@ -53,89 +27,78 @@ pub enum OnnxError {
 /// size and of the largest layer (at most 2²² weights).
 ///
 /// # Errors
-/// If the bytes are not an ONNX model, or the graph is more than a feed-forward chain of the
-/// operators above: the first offending node and operator are named.
+/// If the bytes are not an ONNX model, or the graph is more than a feed-forward chain: the first
+/// offending node and operator are named.
 pub fn read(bytes: &[u8]) -> Result<Network, OnnxError> {
-    let model = proto::Model::decode(bytes).map_err(|e| OnnxError::Encoding(e.to_string()))?;
-    let graph = model
-        .graph
-        .ok_or_else(|| OnnxError::Graph("the file holds no graph".to_owned()))?;
-    let mut values: HashMap<&str, Value> = HashMap::new();
-    for initializer in &graph.initializer {
-        values.insert(
-            &initializer.name,
-            Value::Constant(tensor::read(initializer)?),
-        );
-    }
-    let inputs = graph_inputs(&graph, &values)?;
-    let mut builder = Builder::new(inputs.iter().map(|(_, shape)| shape.size()).sum());
-    let mut offset = 0;
-    for (name, shape) in inputs {
-        let end = offset + shape.size();
-        values.insert(name, Value::Variable(builder.input(offset..end, shape)));
-        offset = end;
-    }
-    for node in &graph.node {
-        let value =
-            operators::apply(node, &values, &mut builder).map_err(|what| OnnxError::Operator {
-                node: node.label(),
-                operator: node.op_type.clone(),
-                what,
-            })?;
-        if let Some(output) = node.output.first() {
-            values.insert(output, value);
-        }
-    }
-    let [output] = graph.output.as_slice() else {
-        return Err(OnnxError::Graph(format!(
-            "{} outputs; exactly one is supported",
-            graph.output.len()
-        )));
-    };
-    let Some(Value::Variable(value)) = values.remove(output.name.as_str()) else {
-        return Err(OnnxError::Graph(format!(
-            "output {:?} does not depend on an input",
-            output.name
-        )));
-    };
-    builder.finish(&value).map_err(OnnxError::Graph)
+    network(&graph::read(bytes)?)
 }
 
-/// The graph's inputs that are not initialisers, with their shapes.
-fn graph_inputs<'a>(
-    graph: &'a proto::Graph,
-    constants: &HashMap<&str, Value>,
-) -> Result<Vec<(&'a str, Shape)>, OnnxError> {
-    let variable = graph
-        .input
-        .iter()
-        .filter(|input| !constants.contains_key(input.name.as_str()));
-    let inputs = variable
-        .map(|input| {
-            let declared = input
-                .r#type
-                .as_ref()
-                .and_then(|t| t.tensor_type.as_ref())
-                .and_then(|t| t.shape.as_ref());
-            let dims = declared.map(|shape| {
-                shape
-                    .dim
-                    .iter()
-                    .map(|d| d.dim_value.max(1))
-                    .collect::<Vec<_>>()
-            });
-            let shape = dims.and_then(|dims| Shape::new(&dims));
-            let shape = shape.ok_or_else(|| {
-                OnnxError::Graph(format!("input {:?} has no usable shape", input.name))
-            })?;
-            Ok((input.name.as_str(), shape))
-        })
-        .collect::<Result<Vec<_>, OnnxError>>()?;
-    match inputs.iter().map(|(_, shape)| shape.size()).sum() {
-        0 => Err(OnnxError::Graph("the graph has no input".to_owned())),
-        1..=tensor::MOST_ELEMENTS => Ok(inputs),
-        many => Err(OnnxError::Graph(format!("{many} inputs are too many"))),
+fn network(graph: &Graph) -> Result<Network, OnnxError> {
+    let sizes = graph.inputs.iter().map(|input| input.shape.size());
+    let mut builder = Builder::new(sizes.clone().sum());
+    let mut values = Vec::new();
+    let mut offset = 0;
+    for size in sizes {
+        values.push(Variable::input(offset..offset + size));
+        offset += size;
     }
+    for step in &graph.steps {
+        let value = apply(step, &values, &mut builder).map_err(|what| step.fault(what))?;
+        values.push(value);
+    }
+    builder.finish(&values[graph.output])
+}
+
+/// The value that a step gives.
+fn apply(step: &Step, values: &[Variable], builder: &mut Builder) -> Result<Variable, String> {
+    let x = &values[step.from[0]];
+    match &step.operation {
+        Operation::Move(pick) => builder.rearranged(x, pick),
+        Operation::Join(pick) => {
+            let parts: Vec<_> = step.from.iter().map(|&part| &values[part]).collect();
+            builder.joined(&parts, pick)
+        }
+        Operation::Add {
+            own,
+            other,
+            constant,
+        } => {
+            let whole = other.abs() == 1.0;
+            let exact = |&c: &f64| whole || exact_product(*other, c).is_some();
+            if !constant.iter().all(exact) {
+                return Err(format!("beta {other} is not supported"));
+            }
+            builder.map(x, constant.len(), |i| {
+                (vec![(i, *own)], other * constant[i])
+            })
+        }
+        Operation::Scale(factors) => {
+            builder.map(x, factors.len(), |i| (vec![(i, factors[i])], 0.0))
+        }
+        Operation::Divide(divisors) => builder.divide(x, divisors),
+        Operation::Linear(linear) => builder.map(x, linear.outputs(), |i| (linear.terms(i), 0.0)),
+        Operation::Relu => builder.activate(x, Activation::Relu),
+        Operation::Tanh => builder.activate(x, Activation::Tanh),
+        Operation::Clip { low, high } => clip(x, *low, *high, builder),
+        _ => Err("is not supported in a network that is verified".to_owned()),
+    }
+}
+
+/// min(high, max(low, x)) as low + relu(x − low) and high − relu(high − x).
+fn clip(
+    x: &Variable,
+    low: Option<f64>,
+    high: Option<f64>,
+    builder: &mut Builder,
+) -> Result<Variable, String> {
+    let (mut value, size) = (x.clone(), x.size());
+    for (limit, sign) in [(low, 1.0), (high, -1.0)] {
+        let Some(limit) = limit else { continue };
+        value = builder.map(&value, size, |i| (vec![(i, sign)], -sign * limit))?;
+        value = builder.activate(&value, Activation::Relu)?;
+        value = builder.map(&value, size, |i| (vec![(i, sign)], limit))?;
+    }
+    Ok(value)
 }
 
 #[cfg(test)]

@@ -50,7 +50,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         features: args.features,
         perspective: args.perspective,
     };
-    let words = onnx::read(&bytes, told)
+    let words = onnx::import(&bytes, told)
         .map_err(|error| Failure::input(format!("cannot use {path}: {error}"), mend(&error)))?;
     let policy =
         cede::keep(&words).map_err(|error| Failure::input(error, "report this as a bug"))?;

@@ -1,32 +1,8 @@
-//! A graph as the chain of operators that a policy is.
+//! A graph as the chain of operations that a policy is.
 
-use super::proto::{Graph, Model, Node, Tensor};
-use super::tensor::Values;
+use super::graph::{Graph, GraphError, Linear, Operation, Step};
 use crate::layers::Layer;
 use cede_controller::policy::MAX_ACCELERATION;
-use prost::Message;
-use std::collections::HashMap;
-
-/// Why a graph is not a policy.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum GraphError {
-    /// Not an ONNX file, or a damaged one.
-    #[error("not an ONNX model: {0}")]
-    Encoding(String),
-    /// The graph as a whole.
-    #[error("{0}")]
-    Graph(String),
-    /// The first node that does not fit.
-    #[error("node {node:?}, operator {operator}: {what}")]
-    Node {
-        /// The node's name, or the name of what it gives.
-        node: String,
-        /// The operator's type.
-        operator: String,
-        /// What does not fit.
-        what: String,
-    },
-}
 
 /// What a policy's graph computes: normalisation, dense layers with ReLU between them, squashing.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,7 +15,7 @@ pub(super) struct Chain {
     pub(super) layers: Vec<Layer>,
 }
 
-/// What the last node has given.
+/// What the last step has given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
     Features,
@@ -61,221 +37,125 @@ impl Stage {
     }
 }
 
-/// The chain of a file, and the file's metadata.
-pub(super) fn read(bytes: &[u8]) -> Result<(Chain, HashMap<String, String>), GraphError> {
-    let model = Model::decode(bytes).map_err(|e| GraphError::Encoding(e.to_string()))?;
-    let lines = model.metadata_props.into_iter();
-    let metadata = lines.map(|line| (line.key, line.value)).collect();
-    let graph = model.graph.as_ref();
-    let graph = graph.ok_or_else(|| GraphError::Graph("the file holds no graph".to_owned()))?;
-    Ok((Walk::through(graph)?, metadata))
-}
-
-struct Walk<'g> {
-    constants: HashMap<&'g str, &'g Tensor>,
-    last: &'g str,
-    stage: Stage,
-    chain: Chain,
-}
-
-impl<'g> Walk<'g> {
-    fn through(graph: &'g Graph) -> Result<Chain, GraphError> {
-        let constants: HashMap<_, _> = graph
-            .initializer
-            .iter()
-            .map(|tensor| (tensor.name.as_str(), tensor))
-            .collect();
-        let (input, count) = input(graph, &constants).map_err(GraphError::Graph)?;
-        let mut walk = Self {
-            constants,
-            last: input,
+impl Chain {
+    /// The chain that a graph is.
+    pub(super) fn of(graph: &Graph) -> Result<Self, GraphError> {
+        let [input] = graph.inputs.as_slice() else {
+            let what = format!("{} inputs instead of one", graph.inputs.len());
+            return Err(GraphError::Graph(what));
+        };
+        let dims = input.shape.dims();
+        let count = input.shape.size();
+        if dims.last() != Some(&count) {
+            let what = format!(
+                "input {:?} of shape {dims:?}; export for a batch of one, or of any number",
+                input.name
+            );
+            return Err(GraphError::Graph(what));
+        }
+        let mut walk = Walk {
             stage: Stage::Features,
-            chain: Chain {
+            chain: Self {
                 centres: vec![0.0; count],
                 scales: vec![1.0; count],
                 limit: None,
                 layers: Vec::new(),
             },
         };
-        for node in &graph.node {
-            walk.pass(node).map_err(|what| GraphError::Node {
-                node: node.label(),
-                operator: node.op_type.clone(),
-                what,
-            })?;
+        for (last, step) in graph.steps.iter().enumerate() {
+            if step.from != [last] {
+                let what = "does not take what the node before it gives: not a chain";
+                return Err(step.fault(what.to_owned()));
+            }
+            walk.stage = walk.apply(step).map_err(|what| step.fault(what))?;
         }
         walk.finish(graph).map_err(GraphError::Graph)
     }
+}
 
-    fn pass(&mut self, node: &'g Node) -> Result<(), String> {
-        if !matches!(node.domain.as_str(), "" | "ai.onnx") {
-            let domain = &node.domain;
-            return Err(format!("operators of domain {domain:?} are not supported"));
-        }
-        let [output, ..] = node.output.as_slice() else {
-            return Err("gives nothing".to_owned());
-        };
-        if node.op_type == "Constant" {
-            let value = node.attribute("value").and_then(|a| a.t.as_ref());
-            let value = value.ok_or("has no value of a supported kind")?;
-            self.constants.insert(output, value);
-            return Ok(());
-        }
-        let place = node.input.iter().position(|input| input == self.last);
-        let place = place.ok_or("does not take what the node before it gives: not a chain")?;
-        let commutes = matches!(node.op_type.as_str(), "Add" | "Mul");
-        if place > usize::from(commutes) {
-            return Err("takes what the node before it gives in the wrong place".to_owned());
-        }
-        self.stage = self.apply(node, 1 - place)?;
-        self.last = output;
-        Ok(())
-    }
+struct Walk {
+    stage: Stage,
+    chain: Chain,
+}
 
-    /// What the node gives; its constant, if it has one, is input `other`.
-    fn apply(&mut self, node: &Node, other: usize) -> Result<Stage, String> {
-        let operator = node.op_type.as_str();
-        Ok(match (operator, self.stage) {
-            ("Identity" | "Dropout", stage) => stage,
-            ("Flatten", stage) if node.attribute("axis").is_none_or(|a| a.i == 1) => stage,
-            ("Sub" | "Add" | "Mul" | "Div", Stage::Features) if self.chain.limit.is_none() => {
-                let constant = self.vector(node, other, self.chain.centres.len())?;
-                self.normalise(operator, &constant)?;
+impl Walk {
+    fn apply(&mut self, step: &Step) -> Result<Stage, String> {
+        let open = self.chain.limit.is_none();
+        Ok(match (&step.operation, self.stage) {
+            (
+                Operation::Add {
+                    own: 1.0,
+                    other,
+                    constant,
+                },
+                Stage::Features,
+            ) if open => {
+                self.normalise(constant, |centre, scale, k| *centre -= other * k / *scale)?
+            }
+            (Operation::Scale(factors), Stage::Features) if open => {
+                self.normalise(factors, |_, scale, k| *scale *= k)?
+            }
+            (Operation::Divide(divisors), Stage::Features) if open => {
+                self.normalise(divisors, |_, scale, k| *scale /= k)?
+            }
+            (&Operation::Clip { low, high }, Stage::Features) if open => {
+                self.chain.limit = Some(limit(low, high)?);
                 Stage::Features
             }
-            ("Clip", Stage::Features) if self.chain.limit.is_none() => {
-                self.chain.limit = Some(self.limit(node)?);
-                Stage::Features
+            (Operation::Linear(linear), Stage::Features | Stage::Hidden) => {
+                self.chain.layers.push(dense(linear));
+                Stage::Sum { biased: false }
             }
-            ("Gemm" | "MatMul", Stage::Features | Stage::Hidden) => {
-                let layer = self.dense(node)?;
-                self.chain.layers.push(layer);
-                let biased = operator == "Gemm";
-                Stage::Sum { biased }
-            }
-            ("Add", Stage::Sum { biased: false }) => {
-                let width = self.width();
-                let biases = narrow(&self.vector(node, other, width)?);
+            (
+                Operation::Add {
+                    own: 1.0,
+                    other: other @ (1.0 | -1.0),
+                    constant,
+                },
+                Stage::Sum { biased: false },
+            ) => {
                 if let Some(layer) = self.chain.layers.last_mut() {
-                    layer.biases = biases;
+                    layer.biases = constant.iter().map(|c| (other * c) as f32).collect();
                 }
                 Stage::Sum { biased: true }
             }
-            ("Relu", Stage::Sum { .. }) => Stage::Hidden,
-            ("Tanh", Stage::Sum { .. }) => Stage::Squashed,
-            ("Mul", Stage::Squashed) => {
+            (Operation::Relu, Stage::Sum { .. }) => Stage::Hidden,
+            (Operation::Tanh, Stage::Sum { .. }) => Stage::Squashed,
+            (Operation::Scale(factors), Stage::Squashed) => {
                 let most = f64::from(MAX_ACCELERATION);
-                let factor = self.vector(node, other, self.width())?;
-                if factor.iter().any(|&f| f != most) {
+                if factors.iter().any(|&f| f != most) {
                     return Err(format!("after Tanh only by {most} m/s²"));
                 }
                 Stage::Acceleration
             }
             (_, stage) => {
                 return Err(format!(
-                    "is not supported after {}; a policy is [Sub Add Mul Div Clip] (Gemm|MatMul+Add Relu)… Gemm [Tanh [Mul]]",
+                    "is not supported after {}, or not in this form; a policy is [Sub Add Mul Div Clip] (Gemm|MatMul+Add Relu)… Gemm [Tanh [Mul]]",
                     stage.text()
                 ));
             }
         })
     }
 
-    /// Number of values at this point of the chain.
-    fn width(&self) -> usize {
-        let last = self.chain.layers.last();
-        last.map_or(self.chain.centres.len(), Layer::outputs)
-    }
-
-    fn normalise(&mut self, operator: &str, constant: &[f64]) -> Result<(), String> {
+    /// Has a constant for each feature change its centre and scale.
+    fn normalise(
+        &mut self,
+        constant: &[f64],
+        change: impl Fn(&mut f64, &mut f64, f64),
+    ) -> Result<Stage, String> {
         let both = self.chain.centres.iter_mut().zip(&mut self.chain.scales);
-        for ((centre, scale), k) in both.zip(constant) {
-            match operator {
-                "Sub" => *centre += k / *scale,
-                "Add" => *centre -= k / *scale,
-                "Mul" => *scale *= k,
-                _ => *scale /= k,
-            }
+        for ((centre, scale), &k) in both.zip(constant) {
+            change(centre, scale, k);
             if !(centre.is_finite() && scale.is_finite()) {
                 return Err("moves a feature beyond all bounds".to_owned());
             }
         }
-        Ok(())
-    }
-
-    fn limit(&self, node: &Node) -> Result<f64, String> {
-        let bound = |name: &str, index| match node.attribute(name) {
-            Some(attribute) => Ok(f64::from(attribute.f)),
-            None => self.vector(node, index, 1).map(|v| v[0]),
-        };
-        let (low, high) = (bound("min", 1)?, bound("max", 2)?);
-        if low == -high && high.is_normal() && high > 0.0 {
-            Ok(high)
-        } else {
-            Err(format!("to {low} … {high}: only ± a number is supported"))
-        }
-    }
-
-    fn dense(&self, node: &Node) -> Result<Layer, String> {
-        let plain = |name, value| node.attribute(name).is_none_or(|a| a.f == value);
-        let flag = |name| node.attribute(name).is_some_and(|a| a.i != 0);
-        if !plain("alpha", 1.0) || !plain("beta", 1.0) || flag("transA") {
-            return Err("alpha, beta and transA must have their defaults".to_owned());
-        }
-        let (tensor, values) = self.constant(node, 1)?;
-        let &[rows, columns] = tensor.dims.as_slice() else {
-            return Err(format!("weights of shape {:?}", tensor.dims));
-        };
-        let size = |n: i64| usize::try_from(n).unwrap_or(0);
-        let (rows, columns) = (size(rows), size(columns));
-        let values = narrow(&values);
-        let (inputs, outputs, weights) = if flag("transB") {
-            let transposed = (0..values.len()).map(|at| values[at % rows * columns + at / rows]);
-            (columns, rows, transposed.collect())
-        } else {
-            (rows, columns, values)
-        };
-        if inputs != self.width() || outputs == 0 {
-            let width = self.width();
-            return Err(format!("{inputs} × {outputs} weights for {width} inputs"));
-        }
-        let given = node.input.get(2).is_some_and(|name| !name.is_empty());
-        let biases = if given {
-            narrow(&self.vector(node, 2, outputs)?)
-        } else {
-            vec![0.0; outputs]
-        };
-        Ok(Layer { weights, biases })
-    }
-
-    /// A constant for each of `count` values: one for all, or a row.
-    fn vector(&self, node: &Node, index: usize, count: usize) -> Result<Vec<f64>, String> {
-        let (tensor, values) = self.constant(node, index)?;
-        match values.as_slice() {
-            &[one] => Ok(vec![one; count]),
-            all if all.len() == count && tensor.dims.last() == Some(&(count as i64)) => Ok(values),
-            _ => Err(format!(
-                "a constant of shape {:?} for {count} values",
-                tensor.dims
-            )),
-        }
-    }
-
-    fn constant(&self, node: &Node, index: usize) -> Result<(&'g Tensor, Vec<f64>), String> {
-        let name = node.input.get(index).filter(|name| !name.is_empty());
-        let name = name.ok_or_else(|| format!("has no input {index}"))?;
-        let tensor = self.constants.get(name.as_str());
-        let tensor = tensor.ok_or_else(|| format!("input {name:?} is not a constant"))?;
-        match tensor.values().map_err(|e| format!("{name:?}: {e}"))? {
-            Values::Real(values) => Ok((tensor, values)),
-            Values::Integer(_) => Err(format!("{name:?}: integers")),
-        }
+        Ok(Stage::Features)
     }
 
     fn finish(self, graph: &Graph) -> Result<Chain, String> {
-        match graph.output.as_slice() {
-            [output] if output.name == self.last => {}
-            [output] => return Err(format!("{:?} is not what the chain gives", output.name)),
-            outputs => return Err(format!("{} outputs instead of one", outputs.len())),
+        if graph.output != graph.steps.len() {
+            return Err("the output is not what the chain gives".to_owned());
         }
         match self.stage {
             Stage::Sum { .. } | Stage::Squashed | Stage::Acceleration => Ok(self.chain),
@@ -284,35 +164,27 @@ impl<'g> Walk<'g> {
     }
 }
 
-/// The graph's one input that is no constant, and how many features it takes.
-fn input<'g>(
-    graph: &'g Graph,
-    constants: &HashMap<&str, &Tensor>,
-) -> Result<(&'g str, usize), String> {
-    let variable: Vec<_> = graph
-        .input
-        .iter()
-        .filter(|input| !constants.contains_key(input.name.as_str()))
-        .collect();
-    let [input] = variable.as_slice() else {
-        return Err(format!("{} inputs instead of one", variable.len()));
-    };
-    let declared = input.r#type.as_ref().and_then(|t| t.tensor_type.as_ref());
-    let row = declared
-        .and_then(|t| t.shape.as_ref())
-        .and_then(|s| s.dim.last());
-    match row.map(|dimension| usize::try_from(dimension.dim_value)) {
-        Some(Ok(count @ 1..=MOST_FEATURES)) => Ok((&input.name, count)),
-        _ => Err(format!(
-            "input {:?} has no usable number of features",
-            input.name
-        )),
+fn limit(low: Option<f64>, high: Option<f64>) -> Result<f64, String> {
+    let (low, high) = (
+        low.unwrap_or(f64::NEG_INFINITY),
+        high.unwrap_or(f64::INFINITY),
+    );
+    if low == -high && high.is_normal() && high > 0.0 {
+        Ok(high)
+    } else {
+        Err(format!("to {low} … {high}: only ± a number is supported"))
     }
 }
 
-/// More features than any set has.
-const MOST_FEATURES: usize = 1024;
-
-fn narrow(values: &[f64]) -> Vec<f32> {
-    values.iter().map(|&v| v as f32).collect()
+/// A dense layer without biases.
+fn dense(linear: &Linear) -> Layer {
+    let outputs = linear.outputs();
+    let mut weights = vec![0.0; linear.inputs() * outputs];
+    for output in 0..outputs {
+        for (input, weight) in linear.terms(output) {
+            weights[input * outputs + output] = weight as f32;
+        }
+    }
+    let biases = vec![0.0; outputs];
+    Layer { weights, biases }
 }

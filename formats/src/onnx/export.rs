@@ -22,7 +22,7 @@ const DOC: &str = "Accelerations (m/s²) within ± 3 from the raw features that 
 
 /// The file's bytes; the same policy gives the same bytes. Never panics.
 #[must_use]
-pub fn write(weights: &Weights<'_>) -> Vec<u8> {
+pub fn export(weights: &Weights<'_>) -> Vec<u8> {
     let entry = |(key, value): (&str, String)| Entry {
         key: key.to_owned(),
         value,

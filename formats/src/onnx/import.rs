@@ -1,6 +1,7 @@
 //! From a graph to a policy.
 
-use super::chain::{self, Chain, GraphError};
+use super::chain::Chain;
+use super::graph::{self, GraphError};
 use crate::description::{self, FEATURES, PERSPECTIVE};
 use crate::layers::Layer;
 use cede_controller::features::LIMIT;
@@ -20,6 +21,7 @@ pub struct Told {
 
 /// Why a graph cannot become a policy.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ImportError {
     /// It computes something else.
     #[error(transparent)]
@@ -63,8 +65,8 @@ pub enum ImportError {
 ///
 /// Understood is a chain of: Sub, Add, Mul, Div with constants and one Clip to ± L (normalisation, all
 /// optional); one to three hidden layers of up to 128 neurons, Gemm or MatMul and Add, each with ReLU; an output
-/// layer; Tanh and Mul by 3 (either may be left out: accelerations are always 3·tanh). Identity, Dropout and
-/// Flatten may stand anywhere. Outputs: the first vehicle's command, the second's (an ego
+/// layer; Tanh and Mul by 3 (either may be left out: accelerations are always 3·tanh). Identity, Dropout
+/// and what changes the shape alone may stand anywhere. Outputs: the first vehicle's command, the second's (an ego
 /// policy may lack it: it then expects the other to keep its speed), and two that are ignored.
 ///
 /// Exact: the controller's accelerations have the bits of its own arithmetic over the graph's numbers, where these
@@ -77,9 +79,10 @@ pub enum ImportError {
 ///
 /// # Errors
 /// See [`ImportError`]; a node that does not fit is named.
-pub fn read(bytes: &[u8], told: Told) -> Result<Vec<u32>, ImportError> {
-    let (chain, metadata) = chain::read(bytes)?;
-    let stated = |key| metadata.get(key).map(String::as_str);
+pub fn import(bytes: &[u8], told: Told) -> Result<Vec<u32>, ImportError> {
+    let graph = graph::read(bytes)?;
+    let chain = Chain::of(&graph)?;
+    let stated = |key| graph.metadata.get(key).map(String::as_str);
     let features = told
         .features
         .or_else(|| stated(FEATURES).and_then(description::features_named))

@@ -1,7 +1,7 @@
 use super::proto::{
     Attribute, Dimension, Graph, Model, Node, Shape, Tensor, TensorType, Type, ValueInfo,
 };
-use super::*;
+use super::{Told, export, import};
 use cede_controller::features::LIMIT;
 use cede_controller::policy::MAX_ACCELERATION;
 use cede_controller::weights::Draft;
@@ -50,8 +50,8 @@ fn what_is_exported_comes_back_with_the_bits_of_its_outputs() {
     for features in FeatureSet::ALL {
         for (perspective, width) in [(Perspective::Joint, 16), (Perspective::Ego, 48)] {
             let words = policy(features, perspective, width);
-            let bytes = write(&Weights::parse(&words).unwrap());
-            let back = read(&bytes, Told::default()).unwrap();
+            let bytes = export(&Weights::parse(&words).unwrap());
+            let back = import(&bytes, Told::default()).unwrap();
             let weights = Weights::parse(&back).unwrap();
             assert_eq!(weights.features, features);
             assert_eq!(weights.perspective, perspective);
@@ -72,7 +72,7 @@ fn what_is_exported_comes_back_with_the_bits_of_its_outputs() {
 fn the_same_policy_gives_the_same_bytes() {
     let words = policy(FeatureSet::Scene, Perspective::Ego, 32);
     let weights = Weights::parse(&words).unwrap();
-    assert_eq!(write(&weights), write(&weights));
+    assert_eq!(export(&weights), export(&weights));
     let again = || crate::safetensors::write(&weights).unwrap();
     assert_eq!(again(), again());
 }
@@ -211,7 +211,7 @@ fn actors_of_one_to_three_hidden_layers_of_any_width_fly() {
         &[14, 7, 33, 65, 1],
     ] {
         let graph = actor(sizes);
-        let words = read(&bytes(graph.clone()), ROUTE).unwrap();
+        let words = import(&bytes(graph.clone()), ROUTE).unwrap();
         let weights = Weights::parse(&words).unwrap();
         assert_eq!(weights.perspective, Perspective::Ego);
         for seed in 0..50 {
@@ -262,7 +262,7 @@ fn normalisation_limits_and_separate_biases_are_understood() {
         node("Add", &["e", "latent_pi.0.bias"], "s0"),
     ];
     graph.node.splice(1..2, nodes);
-    let words = read(&bytes(graph.clone()), ROUTE).unwrap();
+    let words = import(&bytes(graph.clone()), ROUTE).unwrap();
     for seed in 0..50 {
         let x: Vec<f32> = noise(seed).map(|x| 20.0 * x).take(14).collect();
         let seen: Vec<f32> = x
@@ -282,7 +282,7 @@ fn normalisation_limits_and_separate_biases_are_understood() {
 }
 
 fn refusal(graph: Graph, told: Told) -> String {
-    read(&bytes(graph), told).unwrap_err().to_string()
+    import(&bytes(graph), told).unwrap_err().to_string()
 }
 
 #[test]
@@ -328,7 +328,7 @@ fn what_does_not_fit_is_named() {
         "{tanh}"
     );
     let unknown = changed(|graph| graph.node[2].op_type = "Elu".into());
-    assert!(unknown.contains("operator Elu: is not supported after a dense layer"));
+    assert!(unknown.contains("operator Elu: is not supported; supported are Gemm"));
     let factor = changed(|graph| {
         if let Some(t) = graph.node.iter_mut().find(|n| n.op_type == "Constant") {
             t.attribute[0].t = Some(tensor("", &[], &[2.0]));
@@ -339,27 +339,32 @@ fn what_does_not_fit_is_named() {
         "{factor}"
     );
     let missing = changed(|graph| graph.initializer.truncate(3));
-    assert!(missing.ends_with("input \"latent_pi.1.bias\" is not a constant"));
-    let skip = changed(|graph| graph.node[3].input[0] = "f".into());
-    assert!(skip.contains("not a chain"), "{skip}");
+    assert!(missing.ends_with("takes \"latent_pi.1.bias\", which no earlier node gives"));
+    let mut skip = actor(&[14, 14, 2]);
+    skip.node[3].input[0] = "f".into();
+    let skip = refusal(skip, ROUTE);
+    assert!(skip.ends_with("Gemm: does not take what the node before it gives: not a chain"));
     let shape = changed(|graph| graph.initializer[0].dims = vec![14, 16]);
-    assert!(shape.ends_with("16 × 14 weights for 14 inputs"), "{shape}");
+    assert!(
+        shape.ends_with("shapes [1, 14] and [14, 16] do not fit"),
+        "{shape}"
+    );
     let infinite = changed(|graph| graph.initializer[0].float_data[3] = f32::INFINITY);
     assert!(infinite.ends_with("holds a number that is not finite"));
     let large = changed(|graph| graph.initializer[0].float_data[3] = 2e3);
     assert_eq!(large, "a weight is not finite or too large");
     let two = changed(|graph| graph.output.push(value("log_prob", 1)));
-    assert_eq!(two, "2 outputs instead of one");
+    assert_eq!(two, "2 outputs; exactly one is supported");
     let inputs = changed(|graph| graph.input.push(value("mask", 1)));
     assert_eq!(inputs, "2 inputs instead of one");
-    let garbage = read(b"not a model", ROUTE).unwrap_err().to_string();
+    let garbage = import(b"not a model", ROUTE).unwrap_err().to_string();
     assert!(garbage.starts_with("not an ONNX model"), "{garbage}");
 }
 
 proptest! {
     #[test]
     fn any_bytes_are_taken_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
-        let _ = read(&bytes, ROUTE);
+        let _ = import(&bytes, ROUTE);
     }
 
     #[test]
@@ -372,7 +377,7 @@ proptest! {
             let place = place.index(bytes.len());
             bytes[place] = byte;
         }
-        let _ = read(&bytes, ROUTE);
-        let _ = read(&bytes[..cut.index(bytes.len())], ROUTE);
+        let _ = import(&bytes, ROUTE);
+        let _ = import(&bytes[..cut.index(bytes.len())], ROUTE);
     }
 }

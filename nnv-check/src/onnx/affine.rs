@@ -1,15 +1,16 @@
 //! Values as affine maps of the last activations, and the layers that grow out of them.
 
-use super::tensor::{MOST_ELEMENTS, Shape};
+use super::OnnxError;
 use crate::model::{Activation, Layer, Matrix, Network};
 use crate::rounding::{exact_product, exact_sum};
+use cede_formats::onnx::MOST_ELEMENTS;
+use cede_formats::onnx::graph::GraphError;
 use std::ops::Range;
 
 /// A tensor that depends on the inputs: element i is Σ terms of row i + bias i, over the outputs
 /// of layer `base` − 1 (the network's inputs for base 0).
 #[derive(Clone, Debug)]
 pub(super) struct Variable {
-    pub(super) shape: Shape,
     base: usize,
     rows: Vec<Row>,
     /// Relative uncertainty of every coefficient.
@@ -32,44 +33,18 @@ impl Row {
 }
 
 impl Variable {
-    /// The same elements in another shape or order: element i of the result is element `pick(i)`.
-    pub(super) fn rearranged(&self, shape: Shape, pick: impl Fn(usize) -> usize) -> Self {
-        let rows = (0..shape.size())
-            .map(|i| self.rows[pick(i)].clone())
-            .collect();
+    /// A graph input, as the given range of the network's inputs.
+    pub(super) fn input(range: Range<usize>) -> Self {
         Self {
-            shape,
-            rows,
-            ..*self
+            base: 0,
+            rows: range.map(Row::unit).collect(),
+            uncertainty: 0.0,
         }
     }
 
-    /// Elements taken from several variables of the same base: element i is element `pick(i).1` of
-    /// `parts[pick(i).0]`.
-    pub(super) fn gathered(
-        parts: &[&Self],
-        shape: Shape,
-        pick: impl Fn(usize) -> (usize, usize),
-    ) -> Result<Self, String> {
-        let base = parts[0].base;
-        if parts
-            .iter()
-            .any(|part| part.base != base || part.uncertainty != parts[0].uncertainty)
-        {
-            return Err(
-                "joins values of different depths; only chains of layers are supported".to_owned(),
-            );
-        }
-        let rows = (0..shape.size())
-            .map(pick)
-            .map(|(part, i)| parts[part].rows[i].clone())
-            .collect();
-        Ok(Self {
-            shape,
-            base,
-            rows,
-            uncertainty: parts[0].uncertainty,
-        })
+    /// Number of elements.
+    pub(super) fn size(&self) -> usize {
+        self.rows.len()
     }
 
     fn entries(&self) -> usize {
@@ -81,24 +56,54 @@ impl Variable {
 pub(super) struct Builder {
     inputs: usize,
     layers: Vec<Layer>,
+    /// Entries of maps that the graph may still give.
+    room: usize,
 }
+
+/// The most entries that all maps of a graph have together.
+const MOST_IN_ALL: usize = 1 << 26;
 
 impl Builder {
     pub(super) fn new(inputs: usize) -> Self {
         Self {
             inputs,
             layers: Vec::new(),
+            room: MOST_IN_ALL,
         }
     }
 
-    /// A graph input, as the given range of the network's inputs.
-    pub(super) fn input(&self, range: Range<usize>, shape: Shape) -> Variable {
-        Variable {
-            shape,
-            base: 0,
-            rows: range.map(Row::unit).collect(),
-            uncertainty: 0.0,
+    /// The same elements in another order: element i of the result is element `pick[i]`.
+    pub(super) fn rearranged(
+        &mut self,
+        value: &Variable,
+        pick: &[usize],
+    ) -> Result<Variable, String> {
+        let rows = pick.iter().map(|&i| value.rows[i].clone()).collect();
+        self.bounded(Variable { rows, ..*value })
+    }
+
+    /// Elements taken from several values of the same depth: element i is element `pick[i].1` of
+    /// `parts[pick[i].0]`.
+    pub(super) fn joined(
+        &mut self,
+        parts: &[&Variable],
+        pick: &[(usize, usize)],
+    ) -> Result<Variable, String> {
+        let Variable {
+            base, uncertainty, ..
+        } = *parts[0];
+        let differs = |part: &&Variable| part.base != base || part.uncertainty != uncertainty;
+        if parts.iter().any(differs) {
+            return Err(
+                "joins values of different depths; only chains of layers are supported".to_owned(),
+            );
         }
+        let rows = pick.iter().map(|&(part, i)| parts[part].rows[i].clone());
+        self.bounded(Variable {
+            base,
+            rows: rows.collect(),
+            uncertainty,
+        })
     }
 
     /// The affine map of a value: element i of the result is Σ (c·element j) + bias over the terms
@@ -107,21 +112,17 @@ impl Builder {
     pub(super) fn map(
         &mut self,
         value: &Variable,
-        shape: Shape,
+        size: usize,
         row: impl Fn(usize) -> (Vec<(usize, f64)>, f64),
     ) -> Result<Variable, String> {
-        let maps: Vec<_> = (0..shape.size()).map(row).collect();
+        let maps: Vec<_> = (0..size).map(row).collect();
         let merged: Option<Vec<Row>> = maps
             .iter()
             .map(|(terms, bias)| merge(value, terms, *bias))
             .collect();
         let rows = match merged {
             Some(rows) => {
-                return bounded(Variable {
-                    shape,
-                    rows,
-                    ..*value
-                });
+                return self.bounded(Variable { rows, ..*value });
             }
             None => maps
                 .into_iter()
@@ -129,11 +130,7 @@ impl Builder {
                 .collect(),
         };
         let base = self.activate(value, Activation::Identity)?;
-        bounded(Variable {
-            shape,
-            rows,
-            ..base
-        })
+        self.bounded(Variable { rows, ..base })
     }
 
     /// Every element divided by a constant: exact where the reciprocal is, otherwise the
@@ -141,19 +138,17 @@ impl Builder {
     pub(super) fn divide(
         &mut self,
         value: &Variable,
-        shape: Shape,
-        row: impl Fn(usize) -> (usize, f64),
+        divisors: &[f64],
     ) -> Result<Variable, String> {
-        let exact = (0..shape.size()).all(|i| exact_product(row(i).1, 1.0 / row(i).1) == Some(1.0));
-        let reciprocal = |i| {
-            let (index, divisor) = row(i);
-            (vec![(index, 1.0 / divisor)], 0.0)
-        };
+        let exact = divisors
+            .iter()
+            .all(|&d| exact_product(d, 1.0 / d) == Some(1.0));
+        let reciprocal = |i: usize| (vec![(i, 1.0 / divisors[i])], 0.0);
         if exact {
-            return self.map(value, shape, reciprocal);
+            return self.map(value, divisors.len(), reciprocal);
         }
         let value = self.activate(value, Activation::Identity)?;
-        let divided = self.map(&value, shape, reciprocal)?;
+        let divided = self.map(&value, divisors.len(), reciprocal)?;
         let uncertain = Variable {
             uncertainty: f64::EPSILON,
             ..divided
@@ -196,15 +191,26 @@ impl Builder {
         });
         let rows = (0..outputs).map(Row::unit).collect();
         Ok(Variable {
-            shape: value.shape.clone(),
             base: self.layers.len(),
             rows,
             uncertainty: 0.0,
         })
     }
 
+    fn bounded(&mut self, value: Variable) -> Result<Variable, String> {
+        let entries = value.entries();
+        self.room = self
+            .room
+            .checked_sub(entries + value.size())
+            .ok_or("makes the graph too large")?;
+        if entries > MOST_ELEMENTS {
+            return Err("gives too large a map".to_owned());
+        }
+        Ok(value)
+    }
+
     /// The network whose output is the value.
-    pub(super) fn finish(mut self, value: &Variable) -> Result<Network, String> {
+    pub(super) fn finish(mut self, value: &Variable) -> Result<Network, OnnxError> {
         let plain = |(i, row): (usize, &Row)| row.bias == 0.0 && row.terms.as_slice() == [(i, 1.0)];
         let is_last_layer = value.base == self.layers.len()
             && self
@@ -213,17 +219,10 @@ impl Builder {
                 .is_some_and(|last| last.outputs() == value.rows.len())
             && value.rows.iter().enumerate().all(plain);
         if !is_last_layer {
-            self.activate(value, Activation::Identity)?;
+            self.activate(value, Activation::Identity)
+                .map_err(GraphError::Graph)?;
         }
-        Network::new(self.inputs, self.layers).map_err(|e| e.to_string())
-    }
-}
-
-fn bounded(value: Variable) -> Result<Variable, String> {
-    if value.entries() > MOST_ELEMENTS {
-        Err("gives too large a map".to_owned())
-    } else {
-        Ok(value)
+        Ok(Network::new(self.inputs, self.layers)?)
     }
 }
 

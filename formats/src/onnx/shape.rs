@@ -1,38 +1,37 @@
-//! Shapes and constant tensors.
+//! Shapes of tensors.
 
-use super::{OnnxError, proto};
-use cede_formats::onnx::Values;
+/// The most elements of a tensor.
+pub const MOST_ELEMENTS: usize = 1 << 22;
 
-/// The most elements of a tensor or entries of a layer's matrix.
-pub(super) const MOST_ELEMENTS: usize = 1 << 22;
-
-/// The shape of a tensor; its size is at most [`MOST_ELEMENTS`].
+/// The shape of a tensor, outermost dimension first; its size is at most [`MOST_ELEMENTS`].
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Shape(Vec<usize>);
+pub struct Shape(Vec<usize>);
 
 impl Shape {
-    /// A shape, unless a dimension is negative or the size too large.
-    pub(super) fn new(dims: &[i64]) -> Option<Self> {
-        let dims: Vec<usize> = dims
-            .iter()
-            .map(|&d| usize::try_from(d).ok())
-            .collect::<Option<_>>()?;
-        Self::from_dims(dims)
-    }
-
     /// A shape, unless its size is too large.
-    pub(super) fn from_dims(dims: Vec<usize>) -> Option<Self> {
+    #[must_use]
+    pub fn new(dims: Vec<usize>) -> Option<Self> {
         let size = dims
             .iter()
             .try_fold(1_usize, |size, &d| size.checked_mul(d))?;
         (size <= MOST_ELEMENTS).then_some(Self(dims))
     }
 
-    pub(super) fn dims(&self) -> &[usize] {
+    /// A shape as a file states it, unless a dimension is negative or the size too large.
+    pub(super) fn stated(dims: &[i64]) -> Option<Self> {
+        let dims = dims.iter().map(|&d| usize::try_from(d).ok());
+        Self::new(dims.collect::<Option<_>>()?)
+    }
+
+    /// The dimensions.
+    #[must_use]
+    pub fn dims(&self) -> &[usize] {
         &self.0
     }
 
-    pub(super) fn size(&self) -> usize {
+    /// The number of elements.
+    #[must_use]
+    pub fn size(&self) -> usize {
         self.0.iter().product()
     }
 
@@ -48,7 +47,7 @@ impl Shape {
             (1, n) | (n, 1) => Some(n),
             _ => None,
         });
-        Self::from_dims(dims.collect::<Option<_>>()?)
+        Self::new(dims.collect::<Option<_>>()?)
     }
 
     /// Which element of `self` stands at a flat index of `whole`, a broadcast of `self`.
@@ -64,23 +63,4 @@ impl Shape {
         }
         index
     }
-}
-
-/// A constant tensor.
-#[derive(Clone, Debug)]
-pub(super) struct Constant {
-    pub(super) shape: Shape,
-    pub(super) data: Values,
-}
-
-/// A tensor's shape and values.
-pub(super) fn read(tensor: &proto::Tensor) -> Result<Constant, OnnxError> {
-    let fault = |what: String| OnnxError::Tensor {
-        name: tensor.name.clone(),
-        what,
-    };
-    let shape =
-        Shape::new(&tensor.dims).ok_or_else(|| fault(format!("shape {:?}", tensor.dims)))?;
-    let data = tensor.values().map_err(|e| fault(e.to_string()))?;
-    Ok(Constant { shape, data })
 }
