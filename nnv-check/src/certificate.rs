@@ -11,6 +11,7 @@ const MAGIC: &str = "cede-certificate 1";
 
 /// A proof that a network has a property: where both are, and the tree of each query.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Certificate {
     /// The network's file.
     pub onnx: PathBuf,
@@ -21,6 +22,7 @@ pub struct Certificate {
 
 /// A certificate proves less than the property.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CertificateError {
     /// It has not one proof for each query.
     #[error("{proofs} proofs for {queries} queries")]
@@ -44,7 +46,7 @@ pub enum CertificateError {
 }
 
 impl Certificate {
-    /// A certificate from the proofs of [`verify`](super::verify).
+    /// A certificate from the proofs of a prover.
     #[must_use]
     pub fn new(onnx: &Path, vnnlib: &Path, proofs: Vec<Proof>) -> Self {
         Self {

@@ -7,13 +7,19 @@
 //! positive bound. Where rounding or a looser bound leaves a recorded refutation open, it halves
 //! the box itself, a few times at most.
 
-use super::feature::Feature;
-use super::model::{Activation, Layer, Network};
+mod bounds;
+mod form;
+
+use super::enclosure::AffineEnclosure;
+use super::model::Network;
 use super::proof::{Cell, Proof, Refutation, Split};
 use super::property::{Conjunction, InputBox, Query};
+use bounds::Bounds;
+use form::Form;
 
 /// Why a proof does not convince.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CheckError {
     /// The tree refers to something that is not there.
     #[error("region {cell}: {what}")]
@@ -55,22 +61,22 @@ const HALVINGS: u32 = 6;
 /// # Errors
 /// The first region that does not convince.
 pub fn check(network: &Network, query: &Query, proof: &Proof) -> Result<usize, CheckError> {
-    check_behind(network, None, query, proof)
+    check_composed(network, None, query, proof)
 }
 
-/// What the network is given on a box of other variables, as linear functions of those.
-pub type Front<'a> = &'a dyn Fn(&InputBox) -> Vec<Feature>;
+/// Encloses each of a network's inputs on a box of other variables by linear functions of those.
+pub type InputMap<'a> = &'a dyn Fn(&InputBox) -> Vec<AffineEnclosure>;
 
-/// As [`check`], for a network whose inputs are features of the query's variables.
-pub fn check_behind(
+/// As [`check`], for a network whose inputs are functions of the query's variables.
+pub fn check_composed(
     network: &Network,
-    front: Option<Front<'_>>,
+    inputs: Option<InputMap<'_>>,
     query: &Query,
     proof: &Proof,
 ) -> Result<usize, CheckError> {
     let mut pending = vec![Region {
         cell: 0,
-        bounds: Bounds::new(network, front, query.region.clone()),
+        bounds: Bounds::new(network, inputs, query.region.clone()),
         phases: Vec::new(),
         open: (0_u32..).take(query.unsafe_set.len()).collect(),
     }];
@@ -97,6 +103,21 @@ pub fn check_behind(
         }
     }
     Ok(regions)
+}
+
+/// Bounds of all pre-activations on a box, layer by layer, by the checker's dense pass.
+///
+/// `inputs`, if given, encloses the network's inputs on the box; else the box is the inputs'.
+#[must_use]
+pub fn neuron_bounds(
+    network: &Network,
+    inputs: Option<InputMap<'_>>,
+    region: InputBox,
+) -> Vec<Vec<(f64, f64)>> {
+    let mut bounds = Bounds::new(network, inputs, region);
+    // Without assumed phases the bounds cannot contradict each other.
+    let _ = bounds.tighten(network);
+    bounds.layers
 }
 
 #[derive(Clone)]
@@ -264,271 +285,5 @@ impl Region<'_> {
             }
         }
         Ok([one, two])
-    }
-}
-
-/// A linear form c·x + constant, with bounds on what rounding has cost so far.
-struct Form {
-    coefficients: Vec<f64>,
-    /// How far each coefficient may be off; charged where the values it multiplies are known.
-    doubts: Vec<f64>,
-    constant: f64,
-    error: f64,
-}
-
-/// Relative error allowed for every operation: eight times the unit roundoff.
-const ULP: f64 = 4.0 * f64::EPSILON;
-/// Allowance for underflow in each operation.
-const TINY: f64 = 1e-290;
-
-impl Form {
-    fn zero(length: usize) -> Self {
-        Self {
-            coefficients: vec![0.0; length],
-            doubts: vec![0.0; length],
-            constant: 0.0,
-            error: 0.0,
-        }
-    }
-
-    /// Adds factor·(row, constant).
-    fn add(&mut self, row: &[f64], constant: f64, factor: f64) {
-        for ((sum, doubt), c) in self.coefficients.iter_mut().zip(&mut self.doubts).zip(row) {
-            *sum += factor * c;
-            *doubt += ULP * (sum.abs() + (factor * c).abs());
-        }
-        self.constant += factor * constant;
-        self.error += ULP * (self.constant.abs() + (factor * constant).abs());
-    }
-}
-
-/// A box and bounds of all pre-activations, layer by layer.
-#[derive(Clone)]
-pub struct Bounds<'a> {
-    /// The box.
-    pub region: InputBox,
-    front: Option<Front<'a>>,
-    /// What the front gives on the region.
-    features: Vec<Feature>,
-    /// Least and greatest value of each pre-activation.
-    pub layers: Vec<Vec<(f64, f64)>>,
-    /// Which bounds are assumptions about a ReLU's phase, and stay.
-    first: Vec<Option<usize>>,
-}
-
-impl<'a> Bounds<'a> {
-    /// A box before anything is known of the pre-activations; the network's inputs are features of
-    /// its variables where there is a front.
-    #[must_use]
-    pub fn new(network: &Network, front: Option<Front<'a>>, region: InputBox) -> Self {
-        let mut count = 0;
-        let first = network.layers().iter().map(|layer| {
-            let start = (layer.activation != Activation::Identity).then_some(count);
-            count += start.map_or(0, |_| layer.outputs());
-            start
-        });
-        let first = first.collect();
-        let unbounded = |layer: &Layer| vec![(f64::NEG_INFINITY, f64::INFINITY); layer.outputs()];
-        Self {
-            region,
-            front,
-            features: Vec::new(),
-            layers: network.layers().iter().map(unbounded).collect(),
-            first,
-        }
-    }
-
-    /// Assumes a phase of a ReLU.
-    fn assume(&mut self, neuron: usize, on: bool) -> Option<()> {
-        let (layer, first) = self
-            .first
-            .iter()
-            .enumerate()
-            .filter_map(|(i, f)| f.map(|f| (i, f)))
-            .rfind(|(_, f)| *f <= neuron)?;
-        let (l, u) = self.layers[layer].get_mut(neuron - first)?;
-        if on {
-            *l = l.max(0.0);
-        } else {
-            *u = u.min(0.0);
-        }
-        Some(())
-    }
-
-    /// Tightens all bounds to the box; false if they contradict each other.
-    pub fn tighten(&mut self, network: &Network) -> bool {
-        self.features = self
-            .front
-            .map_or_else(Vec::new, |front| front(&self.region));
-        for (index, layer) in network.layers().iter().enumerate() {
-            for i in 0..layer.outputs() {
-                let (l, u) = self.layers[index][i];
-                if layer.activation == Activation::Relu && (l >= 0.0 || u <= 0.0) {
-                    continue;
-                }
-                let side = |sign: f64| {
-                    let mut form = Form::zero(layer.inputs());
-                    form.add(layer.weights.row(i), layer.bias[i], sign);
-                    // The row is exact but for its own uncertainty.
-                    form.error +=
-                        layer.uncertainty * self.reach(network, index, layer.weights.row(i));
-                    self.least(network, index, form, |_| None, |_| 0.0)
-                };
-                let (l, u) = (l.max(side(1.0)), u.min(-side(-1.0)));
-                if l > u {
-                    return false;
-                }
-                self.layers[index][i] = (l, u);
-            }
-        }
-        true
-    }
-
-    /// Largest |row·x| by interval arithmetic over what layer `index` takes.
-    fn reach(&self, network: &Network, index: usize, row: &[f64]) -> f64 {
-        row.iter()
-            .enumerate()
-            .map(|(j, w)| w.abs() * self.magnitude(network, index, j))
-            .sum::<f64>()
-            * (1.0 + 1e-9)
-    }
-
-    /// Largest absolute value of input j of layer `index`.
-    fn magnitude(&self, network: &Network, index: usize, j: usize) -> f64 {
-        if index == 0 {
-            return match self.front {
-                Some(_) => self.features[j].magnitude(&self.region),
-                None => self.region.lower[j].abs().max(self.region.upper[j].abs()),
-            };
-        }
-        let (l, u) = self.layers[index - 1][j];
-        match network.layers()[index - 1].activation {
-            Activation::Relu => u.max(0.0),
-            Activation::Identity => l.abs().max(u.abs()),
-            Activation::Tanh => 1.0,
-        }
-    }
-
-    /// A lower bound of a form over what layer `index` takes: back through the layers before it,
-    /// each activation replaced by a line, then over the box. `slope` may choose lower slopes of
-    /// ReLUs; `multiplier` adds multiples of pre-activations.
-    fn least(
-        &self,
-        network: &Network,
-        index: usize,
-        mut form: Form,
-        slope: impl Fn(usize) -> Option<f64>,
-        multiplier: impl Fn(usize) -> f64,
-    ) -> f64 {
-        let doubts = form.doubts.iter().enumerate();
-        form.error += doubts
-            .map(|(j, d)| d * self.magnitude(network, index, j))
-            .sum::<f64>()
-            * (1.0 + 1e-9);
-        for (depth, layer) in network.layers()[..index].iter().enumerate().rev() {
-            let first = self.first[depth];
-            let mut before = Form::zero(layer.inputs());
-            (before.constant, before.error) = (form.constant, form.error);
-            let mut sizes = vec![0.0; layer.inputs()];
-            for (j, &c) in form.coefficients.iter().enumerate() {
-                let bounds = self.layers[depth][j];
-                let (factor, offset) = line(
-                    layer.activation,
-                    bounds,
-                    c,
-                    first.and_then(|f| slope(f + j)),
-                );
-                let lambda = first.map_or(0.0, |f| multiplier(f + j));
-                let total = factor + lambda;
-                before.constant += offset + total * layer.bias[j];
-                before.error += ULP
-                    * (before.constant.abs()
-                        + offset.abs()
-                        + (total * layer.bias[j]).abs()
-                        + (factor.abs() + lambda.abs() + c.abs())
-                            * bounds.0.abs().max(bounds.1.abs()));
-                if total == 0.0 {
-                    continue;
-                }
-                let row = layer.weights.row(j);
-                for ((sum, size), w) in before.coefficients.iter_mut().zip(&mut sizes).zip(row) {
-                    *sum += total * w;
-                    *size += (total * w).abs();
-                }
-            }
-            // Each coefficient was summed from so many products.
-            let terms = form.coefficients.len() as f64 * ULP + layer.uncertainty;
-            let reach = sizes
-                .iter()
-                .enumerate()
-                .map(|(i, s)| s * self.magnitude(network, depth, i));
-            before.error += terms * reach.sum::<f64>() + TINY;
-            form = before;
-        }
-        if self.front.is_some() {
-            form = self.before_features(&form);
-        }
-        let mut least = form.constant;
-        let mut size = least.abs();
-        for ((&c, &lo), &hi) in form
-            .coefficients
-            .iter()
-            .zip(&self.region.lower)
-            .zip(&self.region.upper)
-        {
-            let term = (c * lo).min(c * hi);
-            least += term;
-            size += term.abs();
-        }
-        let terms = form.coefficients.len() as f64 * ULP;
-        least - (form.error + terms * size) * (1.0 + 1e-9) - TINY
-    }
-}
-
-impl Bounds<'_> {
-    /// The form over the variables that bounds a form over the features from below.
-    fn before_features(&self, form: &Form) -> Form {
-        let mut before = Form::zero(self.region.lower.len());
-        before.error = form.error;
-        before.constant = form.constant;
-        let mut sizes = form.constant.abs();
-        for (feature, &c) in self.features.iter().zip(&form.coefficients) {
-            before.add(&feature.slopes, feature.constant, c);
-            before.constant -= c.abs() * feature.radius;
-            sizes += c.abs() * (feature.magnitude(&self.region) + feature.radius);
-        }
-        let sides = self.region.lower.iter().zip(&self.region.upper);
-        let reach = before.doubts.iter().zip(sides);
-        let doubt: f64 = reach.map(|(d, (lo, hi))| d * lo.abs().max(hi.abs())).sum();
-        before.error += doubt * (1.0 + 1e-9) + self.features.len() as f64 * ULP * sizes;
-        before
-    }
-}
-
-/// For c·f(z) with z in the bounds: (factor, offset) with factor·z + offset ≤ c·f(z).
-fn line(activation: Activation, (l, u): (f64, f64), c: f64, slope: Option<f64>) -> (f64, f64) {
-    match activation {
-        Activation::Identity => (c, 0.0),
-        Activation::Relu if u <= 0.0 => (0.0, 0.0),
-        Activation::Relu if l >= 0.0 => (c, 0.0),
-        Activation::Relu if c >= 0.0 => {
-            let usual = if u + l > 0.0 { 1.0 } else { 0.0 };
-            (c * slope.unwrap_or(usual), 0.0)
-        }
-        Activation::Relu => {
-            // The chord from (l, 0) to (u, u), raised until it clears both ends.
-            let chord = (u / (u - l)).min(1.0);
-            (c * chord, c * (-(chord * l)).max(u - chord * u))
-        }
-        Activation::Tanh => {
-            let (low, high) = (l.tanh(), u.tanh());
-            let flattest = ((1.0 - low * low).min(1.0 - high * high) - 1e-9).max(0.0);
-            let offset = if c >= 0.0 {
-                low - flattest * l - 1e-14
-            } else {
-                high - flattest * u + 1e-14
-            };
-            (c * flattest, c * offset)
-        }
     }
 }

@@ -7,7 +7,7 @@
 
 mod certificate;
 pub mod check;
-mod feature;
+mod enclosure;
 mod model;
 pub mod onnx;
 pub mod proof;
@@ -16,6 +16,6 @@ pub mod rounding;
 pub mod vnnlib;
 
 pub use certificate::{Certificate, CertificateError};
-pub use feature::Feature;
+pub use enclosure::AffineEnclosure;
 pub use model::{Activation, Evaluation, Layer, Matrix, ModelError, Network};
 pub use property::{Conjunction, Halfspace, InputBox, Property, Query};

@@ -138,6 +138,7 @@ pub struct Network {
 /// Layers that do not fit together, or numbers that are not finite.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("layer {layer} {what}")]
+#[non_exhaustive]
 pub struct ModelError {
     /// Index of the layer.
     pub layer: usize,

@@ -55,6 +55,7 @@ pub struct Proof {
 /// A certificate that cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {what}")]
+#[non_exhaustive]
 pub struct ProofError {
     /// Line of the text, from 1.
     pub line: usize,

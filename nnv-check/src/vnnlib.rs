@@ -13,6 +13,7 @@ use expression::{Atom, Formula};
 /// Why a property cannot be used, and where.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}, column {column}: {what}")]
+#[non_exhaustive]
 pub struct VnnlibError {
     /// Line, from 1.
     pub line: usize,

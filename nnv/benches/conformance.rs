@@ -2,7 +2,7 @@
 //! FOLDER [FILTER]`, FOLDER with an `instances.csv` (see `docs/benchmarks.md`). Linux only: CPU
 //! time is read from `/proc`.
 
-use cede_nnv::{Answer, Settings, verify};
+use cede_nnv::{SearchOptions, verify};
 use cede_nnv_check::{onnx, vnnlib};
 use std::path::Path;
 
@@ -30,14 +30,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let start = cpu_seconds()?;
         let network = onnx::read(&std::fs::read(folder.join(onnx))?)?;
         let property = vnnlib::read(&std::fs::read_to_string(folder.join(vnnlib))?)?;
-        let report = verify(&network, &property, Settings::default())?;
+        let report = verify(&network, &property, SearchOptions::default())?;
         let used = cpu_seconds()? - start;
-        let word = match report.answer {
-            Answer::Unsat => "unsat",
-            Answer::Sat(_) => "sat",
-            Answer::Timeout => "timeout",
-            Answer::Unknown => "unknown",
-        };
+        let word = report.answer.word();
         println!(
             "{onnx} {vnnlib} {word} {used:.2} s, {} regions",
             report.regions

@@ -1,12 +1,10 @@
-//! Bound propagation behind a front of features, for whoever searches over something other than
-//! the network's own inputs.
+//! Bound propagation over variables of which a network's inputs are functions, for whoever searches
+//! over those.
 
 use super::objective::Ascent;
-use super::propagation::{Interval, Prepared, Workspace};
-use cede_nnv_check::Feature;
-use cede_nnv_check::Network;
+use super::propagation::{NeuronBounds, Prepared, Workspace};
 use cede_nnv_check::proof::Refutation;
-use cede_nnv_check::{Halfspace, InputBox};
+use cede_nnv_check::{AffineEnclosure, Halfspace, InputBox, Network};
 
 /// A network, and at most one constraint on its outputs, prepared for bounding.
 pub struct Bounder {
@@ -27,7 +25,7 @@ impl Bounder {
 
     /// Bounds of all neurons with an activation before anything is known.
     #[must_use]
-    pub fn unbounded(&self) -> Box<[Interval]> {
+    pub fn unbounded(&self) -> Box<[NeuronBounds]> {
         vec![(f64::NEG_INFINITY, f64::INFINITY); self.prepared.neurons].into()
     }
 
@@ -50,24 +48,35 @@ pub struct Worker<'a> {
 }
 
 impl Worker<'_> {
-    /// Tightens the bounds, which hold on a larger box, to this one.
-    pub fn tighten(&mut self, region: &InputBox, features: &[Feature], bounds: &mut [Interval]) {
+    /// Tightens the bounds, which hold on a larger box, to this one, on which the network's inputs
+    /// are enclosed as given; none given, the box is the inputs' own. Panics if there are neither
+    /// as many enclosures as inputs nor none, or not as many bounds as [`Bounder::unbounded`] gives.
+    pub fn tighten(
+        &mut self,
+        region: &InputBox,
+        inputs: &[AffineEnclosure],
+        bounds: &mut [NeuronBounds],
+    ) {
         let Bounder { prepared, atoms } = self.bounder;
         let workspace = &mut self.workspace;
         // Without assumed phases the bounds cannot contradict each other.
         let _ = pulp::Arch::new()
-            .dispatch(|| workspace.bound(prepared, region, features, bounds, &[], atoms));
+            .dispatch(|| workspace.bound(prepared, region, inputs, bounds, &[], atoms));
     }
 
-    /// Shows that the constraint holds nowhere on the box that was bounded last, if it can.
+    /// Shows that the constraint holds nowhere on the box, which is the one that
+    /// [`Self::tighten`] bounded last. `None` if it cannot, or if the bounder has no constraint.
     pub fn refute(&mut self, region: &InputBox) -> Option<Refutation> {
+        if self.bounder.atoms.is_empty() {
+            return None;
+        }
         let (workspace, ascent) = (&self.workspace, &mut self.ascent);
         let bound = pulp::Arch::new().dispatch(|| ascent.bound(workspace, region, 0..1));
         (bound > 0.0).then(|| ascent.refutation(workspace, 0, bound))
     }
 
     /// After a failed [`Self::refute`]: the point of the box where the relaxation is least, and
-    /// in `scores` how much each variable is to blame.
+    /// in `scores` how much each variable is to blame. Panics without that call.
     #[must_use]
     pub fn minimiser(&self, scores: &mut [f64]) -> Vec<f64> {
         let mut slacks = vec![0.0; self.workspace.symbols.count()];

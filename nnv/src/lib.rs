@@ -17,13 +17,15 @@ mod search;
 mod tests;
 
 pub use bounder::{Bounder, Worker};
+pub use propagation::NeuronBounds;
 
 use cede_nnv_check::{Network, Property, proof};
 use std::time::{Duration, Instant};
 
-/// How to search.
+/// How to search: 60 s, seed 0, [`Branching::Auto`] and no record, unless it is said otherwise.
 #[derive(Clone, Copy, Debug)]
-pub struct Settings {
+#[non_exhaustive]
+pub struct SearchOptions {
     /// Give up after this long.
     pub timeout: Duration,
     /// Seed of every random choice: the same seed gives the same answer on any number of threads,
@@ -35,8 +37,35 @@ pub struct Settings {
     pub record: bool,
 }
 
+impl SearchOptions {
+    /// Gives up after this long.
+    #[must_use]
+    pub const fn timeout(self, timeout: Duration) -> Self {
+        Self { timeout, ..self }
+    }
+
+    /// Draws every random choice from this seed.
+    #[must_use]
+    pub const fn seed(self, seed: u64) -> Self {
+        Self { seed, ..self }
+    }
+
+    /// Cuts regions across these.
+    #[must_use]
+    pub const fn branching(self, branching: Branching) -> Self {
+        Self { branching, ..self }
+    }
+
+    /// Records a proof, or not.
+    #[must_use]
+    pub const fn record(self, record: bool) -> Self {
+        Self { record, ..self }
+    }
+}
+
 /// What the search cuts regions across.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Branching {
     /// Inputs where they are few (at most 12), phases of ReLUs otherwise.
     #[default]
@@ -47,7 +76,7 @@ pub enum Branching {
     Phases,
 }
 
-impl Default for Settings {
+impl Default for SearchOptions {
     fn default() -> Self {
         Self {
             timeout: Duration::from_secs(60),
@@ -60,6 +89,7 @@ impl Default for Settings {
 
 /// The answer to a property.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Answer {
     /// Proved: no input of the boxes gives an unsafe output.
     Unsat,
@@ -71,8 +101,36 @@ pub enum Answer {
     Unknown,
 }
 
+impl Answer {
+    /// The answer in one word, as in VNN-COMP: `unsat`, `sat`, `timeout` or `unknown`.
+    #[must_use]
+    pub const fn word(&self) -> &'static str {
+        match self {
+            Self::Unsat => "unsat",
+            Self::Sat(_) => "sat",
+            Self::Timeout => "timeout",
+            Self::Unknown => "unknown",
+        }
+    }
+
+    /// The answer as in VNN-COMP's results: the word, and the witness with the network's outputs.
+    #[must_use]
+    pub fn text(&self, network: &Network) -> String {
+        let Self::Sat(x) = self else {
+            return self.word().to_owned();
+        };
+        let pairs = |name: &str, values: &[f64]| -> Vec<String> {
+            let pair = |(i, v)| format!("({name}_{i} {v:?})");
+            values.iter().enumerate().map(pair).collect()
+        };
+        let all = [pairs("X", x), pairs("Y", &network.run(x).values)].concat();
+        format!("{}\n({})", self.word(), all.join("\n"))
+    }
+}
+
 /// An answer and what it took.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Report {
     /// The answer.
     pub answer: Answer,
@@ -102,7 +160,7 @@ pub struct ShapeError {
 pub fn verify(
     network: &Network,
     property: &Property,
-    settings: Settings,
+    options: SearchOptions,
 ) -> Result<Report, ShapeError> {
     let shapes = ShapeError {
         property: (property.inputs, property.outputs),
@@ -111,18 +169,18 @@ pub fn verify(
     if shapes.property != shapes.network {
         return Err(shapes);
     }
-    let deadline = Instant::now() + settings.timeout;
+    let deadline = Instant::now() + options.timeout;
     let mut report = Report {
         answer: Answer::Unsat,
         regions: 0,
         proofs: Vec::new(),
     };
-    if let Some(witness) = attack::attack(network, property, settings.seed) {
+    if let Some(witness) = attack::attack(network, property, options.seed) {
         report.answer = Answer::Sat(witness);
         return Ok(report);
     }
     for query in &property.queries {
-        let outcome = search::Problem::new(network, property, query, settings, deadline).search();
+        let outcome = search::Problem::new(network, property, query, options, deadline).search();
         report.regions += outcome.regions;
         match outcome.found {
             search::Found::Nothing => report.proofs.push(outcome.proof),
@@ -138,7 +196,7 @@ pub fn verify(
             search::Found::Stuck => report.answer = Answer::Unknown,
         }
     }
-    if report.answer != Answer::Unsat || !settings.record {
+    if report.answer != Answer::Unsat || !options.record {
         report.proofs.clear();
     }
     Ok(report)

@@ -1,82 +1,16 @@
 //! Sound bounds for every neuron and for the atoms of a query on a box, layer by layer.
 
+mod prepared;
+
 use super::kernel::{LANES, Lane, compose, padded};
 use super::relaxation::{Lines, Symbols};
-use cede_nnv_check::Feature;
 use cede_nnv_check::rounding::{SPARE, UNDERFLOW};
-use cede_nnv_check::{Activation, Network};
-use cede_nnv_check::{Halfspace, InputBox};
+use cede_nnv_check::{Activation, AffineEnclosure, InputBox};
+pub(crate) use prepared::Prepared;
+use prepared::PreparedLayer;
 
-/// Bounds of a pre-activation.
-pub(super) type Interval = (f64, f64);
-
-/// A network and the atoms of a query as the propagation wants them: weights by input neuron.
-pub(super) struct Prepared {
-    pub(super) inputs: usize,
-    layers: Vec<PreparedLayer>,
-    /// Neurons with an activation, over all layers.
-    pub(super) neurons: usize,
-    /// How an unstable ReLU is enclosed: [`Lines::relu`]; tests plant unsound lines here.
-    pub(super) enclose: fn(f64, f64) -> Lines,
-}
-
-struct PreparedLayer {
-    outputs: usize,
-    /// One row for each *input* of the layer.
-    columns: Vec<f64>,
-    bias: Vec<f64>,
-    activation: Activation,
-    relative_error: f64,
-    uncertainty: f64,
-    /// Index of its first neuron among all neurons with an activation.
-    first: usize,
-}
-
-impl Prepared {
-    /// Prepares the network followed by one more layer, the atoms coefficients · y − bound.
-    pub(super) fn new(network: &Network, atoms: &[&Halfspace]) -> Self {
-        let mut layers = Vec::new();
-        let mut neurons = 0;
-        for layer in network.layers() {
-            let (inputs, outputs) = (layer.inputs(), layer.outputs());
-            let columns = (0..inputs)
-                .flat_map(|j| (0..outputs).map(move |i| layer.weights.row(i)[j]))
-                .collect();
-            layers.push(PreparedLayer {
-                outputs,
-                columns,
-                bias: layer.bias.clone(),
-                activation: layer.activation,
-                relative_error: layer.relative_error(),
-                uncertainty: 2.0 * layer.uncertainty,
-                first: neurons,
-            });
-            neurons += if layer.activation == Activation::Identity {
-                0
-            } else {
-                outputs
-            };
-        }
-        let outputs = network.outputs();
-        layers.push(PreparedLayer {
-            outputs: atoms.len(),
-            columns: (0..outputs)
-                .flat_map(|j| atoms.iter().map(move |a| a.coefficients[j]))
-                .collect(),
-            bias: atoms.iter().map(|a| -a.bound).collect(),
-            activation: Activation::Identity,
-            relative_error: cede_nnv_check::rounding::gamma(outputs + 4),
-            uncertainty: 0.0,
-            first: neurons,
-        });
-        Self {
-            inputs: network.inputs(),
-            layers,
-            neurons,
-            enclose: Lines::relu,
-        }
-    }
-}
+/// Least and greatest value of a pre-activation.
+pub type NeuronBounds = (f64, f64);
 
 /// An assumed phase of a ReLU: which neuron, and whether its pre-activation is ≥ 0 (else ≤ 0).
 pub(super) type Phase = (u32, bool);
@@ -127,8 +61,8 @@ impl Workspace {
         &mut self,
         network: &Prepared,
         region: &InputBox,
-        features: &[Feature],
-        bounds: &mut [Interval],
+        enclosures: &[AffineEnclosure],
+        bounds: &mut [NeuronBounds],
         phases: &[Phase],
         atoms: &[usize],
     ) -> Result<(), Empty> {
@@ -136,11 +70,11 @@ impl Workspace {
         self.symbols.restart(&region.lower, &region.upper);
         self.shares.clear();
         self.direct.clear();
-        if features.is_empty() {
+        if enclosures.is_empty() {
             self.direct.extend((0..network.inputs).map(|i| (i, i + 1)));
         }
-        for (input, feature) in features.iter().enumerate() {
-            let column = self.push_feature(region, feature);
+        for (input, enclosure) in enclosures.iter().enumerate() {
+            let column = self.push_input(region, enclosure);
             self.direct.push((input, column));
         }
         self.active.clear();
@@ -173,26 +107,26 @@ impl Workspace {
         Ok(())
     }
 
-    /// Adds an input of the network that is a feature of the region's variables; gives its column.
-    fn push_feature(&mut self, region: &InputBox, feature: &Feature) -> usize {
-        let row = std::iter::once(feature.constant).chain(feature.slopes.iter().copied());
+    /// Adds an input of the network that is enclosed over the region's variables; gives its column.
+    fn push_input(&mut self, region: &InputBox, enclosure: &AffineEnclosure) -> usize {
+        let row = std::iter::once(enclosure.constant).chain(enclosure.slopes.iter().copied());
         let size = row
             .clone()
             .zip(self.symbols.most())
             .map(|(c, most)| c.abs() * most)
             .sum::<f64>();
         let sides = region.lower.iter().zip(&region.upper);
-        let reach = feature.slopes.iter().zip(sides);
+        let reach = enclosure.slopes.iter().zip(sides);
         let start = self.shares.len();
         self.shares
             .extend(reach.map(|(s, (lo, hi))| s.abs() * (hi - lo)));
         normalise(&mut self.shares[start..]);
         self.symbols.push(
-            FEATURE,
+            NO_NEURON,
             row,
             (0.0, size * SPARE),
-            feature.linear_range(region),
-            Lines::feature(feature, region),
+            enclosure.affine_range(region),
+            Lines::enclosure(enclosure, region),
         )
     }
 
@@ -283,7 +217,7 @@ impl Workspace {
         &mut self,
         layer: &PreparedLayer,
         region: &InputBox,
-        bounds: &mut [Interval],
+        bounds: &mut [NeuronBounds],
     ) -> Result<(), Empty> {
         let inputs = region.lower.len();
         let open = |i: usize| {
@@ -357,7 +291,7 @@ impl Workspace {
     fn release(
         &mut self,
         layer: &PreparedLayer,
-        bounds: &[Interval],
+        bounds: &[NeuronBounds],
         phases: &[Phase],
         enclose: fn(f64, f64) -> Lines,
     ) {
@@ -409,7 +343,7 @@ impl Workspace {
 }
 
 /// Stands for the neuron of a symbol that is none.
-const FEATURE: usize = usize::MAX;
+const NO_NEURON: usize = usize::MAX;
 
 /// Scales the numbers so that they sum to 1, unless all are zero.
 fn normalise(shares: &mut [f64]) {
@@ -418,6 +352,6 @@ fn normalise(shares: &mut [f64]) {
 }
 
 /// Whether a ReLU with these bounds is neither always on nor always off.
-pub(super) fn is_unstable((l, u): Interval) -> bool {
+pub(super) fn is_unstable((l, u): NeuronBounds) -> bool {
     l < 0.0 && u > 0.0
 }

@@ -16,7 +16,7 @@
 
 use super::kernel::{LANES, Lane, add_row};
 use cede_nnv_check::rounding::{SPARE, UNDERFLOW, gamma};
-use cede_nnv_check::{Feature, InputBox};
+use cede_nnv_check::{AffineEnclosure, InputBox};
 
 /// Two lines that enclose an activation on an interval: below, slope·z + offset ≤ f(z), above
 /// likewise.
@@ -50,13 +50,13 @@ impl Lines {
     }
 
     /// Of an input of the network over the linear part of what encloses it.
-    pub(super) fn feature(feature: &Feature, region: &InputBox) -> Self {
+    pub(super) fn enclosure(input: &AffineEnclosure, region: &InputBox) -> Self {
         Self {
             lower_slope: 1.0,
-            lower_offset: -feature.radius,
+            lower_offset: -input.radius,
             upper_slope: 1.0,
-            upper_offset: feature.radius,
-            most: feature.magnitude(region),
+            upper_offset: input.radius,
+            most: input.magnitude(region),
             free: false,
         }
     }

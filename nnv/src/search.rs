@@ -5,14 +5,17 @@
 //! the proof and the count of regions depend on the problem alone, not on the number of threads,
 //! and no more than the open ends of the running tasks are in memory.
 
+mod node;
+
 use super::attack::{confirmed, worst};
 use super::forward::Runner;
 use super::objective::Ascent;
-use super::propagation::{Interval, Phase, Prepared, Workspace, is_unstable};
-use super::{Branching, Settings};
+use super::propagation::{Prepared, Workspace, is_unstable};
+use super::{Branching, SearchOptions};
 use cede_nnv_check::Network;
 use cede_nnv_check::proof::{Cell, Proof, Split};
-use cede_nnv_check::{Halfspace, InputBox, Property, Query};
+use cede_nnv_check::{Halfspace, Property, Query};
+use node::{Node, split_input, split_phase};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::time::Instant;
@@ -37,16 +40,6 @@ const ROUND: usize = 64;
 /// Up to so many inputs, boxes are split across inputs; beyond, across phases of ReLUs.
 const FEW_INPUTS: usize = 12;
 
-/// A region: a box and assumed phases, what is known of it, and what is still to be refuted.
-struct Node {
-    region: InputBox,
-    bounds: Box<[Interval]>,
-    phases: Box<[Phase]>,
-    open: Box<[u32]>,
-    /// Its place in the record.
-    cell: usize,
-}
-
 /// A query to be searched.
 pub(super) struct Problem<'a> {
     pub(super) network: &'a Network,
@@ -54,7 +47,7 @@ pub(super) struct Problem<'a> {
     pub(super) query: &'a Query,
     pub(super) prepared: Prepared,
     pub(super) deadline: Instant,
-    pub(super) settings: Settings,
+    pub(super) options: SearchOptions,
 }
 
 /// What a search gives.
@@ -71,7 +64,7 @@ impl<'a> Problem<'a> {
         network: &'a Network,
         property: &'a Property,
         query: &'a Query,
-        settings: Settings,
+        options: SearchOptions,
         deadline: Instant,
     ) -> Self {
         let atoms: Vec<&Halfspace> = query.unsafe_set.iter().flatten().collect();
@@ -81,7 +74,7 @@ impl<'a> Problem<'a> {
             query,
             prepared: Prepared::new(network, &atoms),
             deadline,
-            settings,
+            options,
         }
     }
 
@@ -103,10 +96,10 @@ impl<'a> Problem<'a> {
         while !stack.is_empty() {
             let batch = stack.split_off(stack.len().saturating_sub(ROUND));
             let roots: Vec<usize> = batch.iter().map(|node| node.cell).collect();
-            let work = |worker: &mut Worker<'_>, node| worker.work(node);
+            let work = |searcher: &mut Searcher<'_>, node| searcher.work(node);
             let done: Vec<Done> = batch
                 .into_par_iter()
-                .map_init(|| Worker::new(self), work)
+                .map_init(|| Searcher::new(self), work)
                 .collect();
             outcome.regions += done.iter().map(|d| d.regions).sum::<u64>();
             for (task, root) in done.into_iter().zip(roots) {
@@ -171,7 +164,7 @@ enum Step {
     Witness(Vec<f64>),
 }
 
-struct Worker<'a> {
+struct Searcher<'a> {
     problem: &'a Problem<'a>,
     workspace: Workspace,
     ascent: Ascent,
@@ -180,7 +173,7 @@ struct Worker<'a> {
     slack: Vec<f64>,
 }
 
-impl<'a> Worker<'a> {
+impl<'a> Searcher<'a> {
     fn new(problem: &'a Problem<'a>) -> Self {
         Self {
             problem,
@@ -201,7 +194,7 @@ impl<'a> Worker<'a> {
             cells: Vec::new(),
             regions: 0,
         };
-        if self.problem.settings.record {
+        if self.problem.options.record {
             done.cells.push(Cell::default());
         }
         let arch = pulp::Arch::new();
@@ -219,7 +212,7 @@ impl<'a> Worker<'a> {
                 Step::Refuted => {}
                 Step::Stuck => done.found = Found::Stuck,
                 Step::Split(split, mut children) => {
-                    if self.problem.settings.record {
+                    if self.problem.options.record {
                         let first = done.cells.len();
                         cell.split = Some((split, first as u32));
                         done.cells.extend([Cell::default(), Cell::default()]);
@@ -233,7 +226,7 @@ impl<'a> Worker<'a> {
                     break;
                 }
             }
-            if self.problem.settings.record {
+            if self.problem.options.record {
                 done.cells[place] = cell;
             }
         }
@@ -284,7 +277,7 @@ impl<'a> Worker<'a> {
                 }
             }
             if bound > 0.0 {
-                if problem.settings.record {
+                if problem.options.record {
                     cell.refuted
                         .push(self.ascent.refutation(&self.workspace, conjunction, bound));
                 }
@@ -304,7 +297,7 @@ impl<'a> Worker<'a> {
             return Step::Refuted;
         }
         node.open = open.into();
-        let by_phase = match problem.settings.branching {
+        let by_phase = match problem.options.branching {
             Branching::Auto => self.scores.len() > FEW_INPUTS,
             Branching::Inputs => false,
             Branching::Phases => true,
@@ -332,56 +325,5 @@ impl<'a> Worker<'a> {
             .filter(free)
             .max_by(|&a, &b| self.slack[a].total_cmp(&self.slack[b]))?;
         u32::try_from(symbols.neuron(most)).ok()
-    }
-}
-
-/// Halves the box across the input with the highest score (the widest one, if nothing is blamed).
-/// The children are in the order in which they are searched last to first.
-fn split_input(node: Node, scores: &[f64]) -> Option<(Split, [Node; 2])> {
-    let InputBox { lower, upper } = &node.region;
-    let middle = |i: usize| 0.5 * (lower[i] + upper[i]);
-    let divisible = |&i: &usize| lower[i] < middle(i) && middle(i) < upper[i];
-    let better = |&a: &usize, &b: &usize| {
-        let width = |i: usize| upper[i] - lower[i];
-        scores[a]
-            .total_cmp(&scores[b])
-            .then(width(a).total_cmp(&width(b)))
-            .then(b.cmp(&a))
-    };
-    let input = (0..lower.len()).filter(divisible).max_by(better)?;
-    let at = middle(input);
-    let mut below = node.copy();
-    let mut above = node;
-    below.region.upper[input] = at;
-    above.region.lower[input] = at;
-    Some((
-        Split::Input {
-            input: u32::try_from(input).ok()?,
-            at,
-        },
-        [above, below],
-    ))
-}
-
-/// Assumes the ReLU off, then on.
-fn split_phase(node: Node, neuron: u32) -> [Node; 2] {
-    let assume = |mut node: Node, on: bool| {
-        let (l, u) = &mut node.bounds[neuron as usize];
-        *(if on { l } else { u }) = 0.0;
-        node.phases = node.phases.iter().copied().chain([(neuron, on)]).collect();
-        node
-    };
-    [assume(node.copy(), false), assume(node, true)]
-}
-
-impl Node {
-    fn copy(&self) -> Self {
-        Self {
-            region: self.region.clone(),
-            bounds: self.bounds.clone(),
-            phases: self.phases.clone(),
-            open: self.open.clone(),
-            cell: self.cell,
-        }
     }
 }

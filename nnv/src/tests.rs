@@ -171,14 +171,14 @@ fn agrees_with_the_enumeration_of_all_patterns() {
         let atoms: Vec<_> = (0..1 + round % 3).map(|_| atom(&mut random)).collect();
         let least = least_violation(&network, &region, &atoms);
         for branching in [Branching::Inputs, Branching::Phases] {
-            let settings = Settings {
+            let options = SearchOptions {
                 branching,
                 record: true,
                 seed: round as u64,
-                ..Settings::default()
+                ..SearchOptions::default()
             };
             let verdict = |by: f64| {
-                verify(&network, &shifted(&region, &atoms, by), settings).expect("shapes fit")
+                verify(&network, &shifted(&region, &atoms, by), options).expect("shapes fit")
             };
             let proved = verdict(least - 1e-4);
             assert_eq!(
@@ -297,11 +297,11 @@ fn the_same_seed_gives_the_same_answer_on_any_number_of_threads() {
                 .num_threads(threads)
                 .build()
                 .expect("a pool");
-            let settings = Settings {
+            let options = SearchOptions {
                 record: true,
-                ..Settings::default()
+                ..SearchOptions::default()
             };
-            pool.install(|| verify(&network, &shifted(&region, &atoms, by), settings))
+            pool.install(|| verify(&network, &shifted(&region, &atoms, by), options))
         };
         assert_eq!(on(1), on(3));
     }
@@ -318,12 +318,12 @@ fn the_checker_refuses_what_is_not_a_proof() {
     }];
     // Bisection for a property that only just holds, so that the proof has many regions.
     let (mut holds, mut fails) = (-100.0, 100.0);
-    let settings = Settings {
+    let options = SearchOptions {
         record: true,
-        ..Settings::default()
+        ..SearchOptions::default()
     };
     let verdict =
-        |by| verify(&network, &shifted(&region, &atoms, by), settings).expect("shapes fit");
+        |by| verify(&network, &shifted(&region, &atoms, by), options).expect("shapes fit");
     while fails - holds > 1e-4 {
         let middle = 0.5 * (holds + fails);
         *(if verdict(middle).answer == Answer::Unsat {

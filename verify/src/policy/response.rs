@@ -6,7 +6,7 @@ use super::interval::{Interval, STATE};
 use super::search::{MOST, TANH, single_precision_margin};
 use cede_formats::property::Setting;
 use cede_nnv::Bounder;
-use cede_nnv_check::{Activation, Feature, InputBox};
+use cede_nnv_check::{Activation, AffineEnclosure, InputBox};
 
 /// Bounds a policy's acceleration on boxes of states, in one setting.
 pub(crate) struct Response<'a> {
@@ -42,7 +42,7 @@ impl<'a> Response<'a> {
         };
         let network = &self.subject.network;
         let enclosed = self.subject.features(&region, &self.setting);
-        let features: Vec<Feature> = enclosed.iter().map(|e| e.feature.clone()).collect();
+        let features: Vec<AffineEnclosure> = enclosed.iter().map(|e| e.feature.clone()).collect();
         let mut bounds = self.bounder.unbounded();
         self.bounder
             .worker()
@@ -121,7 +121,7 @@ impl<'a> Response<'a> {
 }
 
 /// The feature's range on a box.
-fn range(feature: &Feature, region: &InputBox) -> Interval {
+fn range(feature: &AffineEnclosure, region: &InputBox) -> Interval {
     let sides = region.lower.iter().zip(&region.upper);
     feature
         .slopes

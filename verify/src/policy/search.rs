@@ -9,7 +9,7 @@ use cede_formats::property::{Claim, Place, Setting, StateProperty, Variable};
 use cede_nnv::{Bounder, Worker};
 use cede_nnv_check::check::{self, CheckError};
 use cede_nnv_check::proof::{Cell, Proof, Split};
-use cede_nnv_check::{Feature, Halfspace, InputBox, Network, Query};
+use cede_nnv_check::{AffineEnclosure, Halfspace, InputBox, Network, Query};
 use rayon::prelude::*;
 use std::time::Instant;
 
@@ -146,7 +146,7 @@ impl<'a> Task<'a> {
         let region = region(property);
         let enclosed = subject.features(&region, &setting);
         let roundings: Vec<f64> = enclosed.iter().map(|e| e.rounding).collect();
-        let features: Vec<Feature> = enclosed.into_iter().map(|e| e.feature).collect();
+        let features: Vec<AffineEnclosure> = enclosed.into_iter().map(|e| e.feature).collect();
         let mut root = Bounder::new(&subject.network, None).unbounded();
         Bounder::new(&subject.network, None)
             .worker()
@@ -226,7 +226,7 @@ impl<'a> Task<'a> {
 
     fn step(&self, worker: &mut Worker<'_>, mut node: Node) -> Step {
         let enclosed = self.subject.features(&node.region, &self.setting);
-        let features: Vec<Feature> = enclosed.iter().map(|e| e.feature.clone()).collect();
+        let features: Vec<AffineEnclosure> = enclosed.iter().map(|e| e.feature.clone()).collect();
         worker.tighten(&node.region, &features, &mut node.bounds);
         let mut scores = vec![0.0; node.region.lower.len()];
         let mut candidates = vec![middle(&node.region)];
@@ -299,7 +299,7 @@ impl<'a> Task<'a> {
             unsafe_set: vec![vec![atom.clone()]],
         };
         let front = |region: &InputBox| self.subject.front(region, &self.setting);
-        check::check_behind(&self.subject.network, Some(&front), &query, proof)
+        check::check_composed(&self.subject.network, Some(&front), &query, proof)
     }
 }
 
@@ -354,7 +354,7 @@ fn unsafe_side(claim: Claim, margin: f64) -> Option<Halfspace> {
 /// inputs with their `errors` given: the usual bound for sums of products in any order, carried through the layers.
 pub(super) fn single_precision_margin(
     network: &Network,
-    features: &[Feature],
+    features: &[AffineEnclosure],
     region: &InputBox,
     bounds: &[(f64, f64)],
     mut errors: Vec<f64>,

@@ -1,7 +1,7 @@
 //! `cede verify network`.
 
 use crate::failure::Failure;
-use cede_nnv::{self as verifier, Answer, Branching, Report, Settings};
+use cede_nnv::{self as verifier, Answer, Branching, Report, SearchOptions};
 use cede_nnv_check::{self as trusted, Certificate};
 use cede_sim::output;
 use clap::{Args, ValueEnum};
@@ -72,19 +72,18 @@ impl Network {
                 self.timeout
             ))
         })?;
-        let settings = Settings {
-            timeout,
-            seed: self.seed,
-            branching: self.branching.into(),
-            record: self.certificate.is_some(),
-        };
+        let options = SearchOptions::default()
+            .timeout(timeout)
+            .seed(self.seed)
+            .branching(self.branching.into())
+            .record(self.certificate.is_some());
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(self.threads)
             .build()
             .into_diagnostic();
         let pool = pool.map_err(Failure::Input)?;
         let report = pool
-            .install(|| verifier::verify(&network, &property, settings))
+            .install(|| verifier::verify(&network, &property, options))
             .into_diagnostic();
         let mut report = report.map_err(Failure::Input)?;
         if let (Some(path), Answer::Unsat) = (&self.certificate, &report.answer) {
@@ -106,42 +105,18 @@ impl Network {
     }
 
     fn told(&self, network: &trusted::Network, report: &Report, seconds: f64) -> String {
-        let word = word(&report.answer);
-        let witness = match &report.answer {
-            Answer::Sat(x) => Some((x, network.run(x).values)),
-            _ => None,
-        };
-        if self.json {
-            let witness = witness.map(|(x, y)| serde_json::json!({ "x": x, "y": y }));
-            return serde_json::json!({
-                "answer": word, "semantics": "real", "regions": report.regions,
-                "seconds": seconds, "witness": witness,
-            })
-            .to_string();
+        if !self.json {
+            return report.answer.text(network);
         }
-        let Some((x, y)) = witness else {
-            return word.to_owned();
+        let witness = match &report.answer {
+            Answer::Sat(x) => serde_json::json!({ "x": x, "y": network.run(x).values }),
+            _ => serde_json::Value::Null,
         };
-        let pairs = |name: &str, values: &[f64]| -> Vec<String> {
-            values
-                .iter()
-                .enumerate()
-                .map(|(i, v)| format!("({name}_{i} {v:?})"))
-                .collect()
-        };
-        format!(
-            "{word}\n({})",
-            [pairs("X", x), pairs("Y", &y)].concat().join("\n")
-        )
-    }
-}
-
-fn word(answer: &Answer) -> &'static str {
-    match answer {
-        Answer::Unsat => "unsat",
-        Answer::Sat(_) => "sat",
-        Answer::Timeout => "timeout",
-        Answer::Unknown => "unknown",
+        serde_json::json!({
+            "answer": report.answer.word(), "semantics": "real", "regions": report.regions,
+            "seconds": seconds, "witness": witness,
+        })
+        .to_string()
     }
 }
 

@@ -1,4 +1,4 @@
-//! What stands before a network's inputs, for whoever searches over something other than these.
+//! A network's inputs as functions of other variables, for whoever searches over those.
 
 use super::property::InputBox;
 use super::rounding::gamma;
@@ -6,7 +6,7 @@ use super::rounding::gamma;
 /// An input of the network as a linear function of the variables of a box:
 /// |input − (constant + slopes · x)| ≤ radius everywhere on it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Feature {
+pub struct AffineEnclosure {
     /// The constant.
     pub constant: f64,
     /// One slope for each variable.
@@ -15,9 +15,10 @@ pub struct Feature {
     pub radius: f64,
 }
 
-impl Feature {
+impl AffineEnclosure {
     /// Range of the linear part on the box, rounding included.
-    pub fn linear_range(&self, region: &InputBox) -> (f64, f64) {
+    #[must_use]
+    pub fn affine_range(&self, region: &InputBox) -> (f64, f64) {
         let (mut l, mut u, mut size) = (self.constant, self.constant, self.constant.abs());
         for ((s, lo), hi) in self.slopes.iter().zip(&region.lower).zip(&region.upper) {
             let (a, b) = (s * lo, s * hi);
@@ -30,8 +31,9 @@ impl Feature {
     }
 
     /// Largest absolute value of the input on the box.
+    #[must_use]
     pub fn magnitude(&self, region: &InputBox) -> f64 {
-        let (l, u) = self.linear_range(region);
+        let (l, u) = self.affine_range(region);
         (l.abs().max(u.abs()) + self.radius) * (1.0 + 1e-12)
     }
 }
