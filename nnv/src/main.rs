@@ -5,6 +5,7 @@ use cede_nnv::{Answer, Branching, SearchOptions, verify};
 use cede_nnv_check::{Certificate, onnx, vnnlib};
 use clap::{Parser, ValueEnum};
 use std::error::Error;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -48,7 +49,8 @@ enum Cut {
 fn main() -> ExitCode {
     match run(&Arguments::parse()) {
         Ok(text) => {
-            println!("{text}");
+            // A reader that has seen enough may close the pipe.
+            let _ = writeln!(std::io::stdout(), "{text}");
             ExitCode::SUCCESS
         }
         Err(error) => {
