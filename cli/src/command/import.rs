@@ -72,7 +72,7 @@ fn mend(error: &ImportError) -> &'static str {
         }
         ImportError::Outputs { .. } => "export the means of the commands alone",
         ImportError::Weights(_) => "keep weights within ± 1000 and normalise the features",
-        ImportError::Graph(_) => "see `cede help import` for the graphs that are understood",
+        _ => "see `cede help import` for the graphs that are understood",
     }
 }
 
