@@ -3,8 +3,8 @@
 use crate::failure::Failure;
 use cede_controller::{Contract, Policy};
 use cede_data::Encounter;
+use cede_formats::cede;
 use cede_sim::driver::{Baseline, Cede, DriverFactory, FitError, PolicyAlone, Shielded};
-use cede_sim::weights;
 use std::path::Path;
 use std::str::FromStr;
 
@@ -70,7 +70,7 @@ pub(crate) fn policy(weights: Option<&Path>) -> Result<Policy<'static>, Failure>
         let words = cede_controller::policy::embedded::words();
         return Policy::new(words).map_err(|error| Failure::input(error, "report this as a bug"));
     };
-    weights::load(file)
+    cede::load(file)
         .map_err(|error| Failure::input(error, "give a .cede file as `cede train` writes it"))
 }
 

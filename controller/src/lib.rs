@@ -26,7 +26,7 @@
 //! let scene = Scene::<8>::new(path(&mine), &[path(&theirs)])?;
 //!
 //! // The policy that ships, or `include_weights!("own.cede")`; and this vehicle's brakes.
-//! let policy = Policy::new(cede_controller::embedded::words())?;
+//! let policy = Policy::new(cede_controller::policy::embedded::words())?;
 //! let mut contract = Contract::WORST_CASE;
 //! contract.ego.braking = 4.0;
 //! let mut controller = Controller::<8>::new(policy, contract, Part::Left)?;

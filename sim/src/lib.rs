@@ -11,11 +11,9 @@ mod fixture;
 pub mod judge;
 pub mod metrics;
 pub mod observation_model;
-pub mod property;
 pub mod reward;
 pub mod statistics;
 pub mod transparency;
-pub mod weights;
 
 pub use driver::{Driver, DriverFactory, View};
 pub use judge::Judge;

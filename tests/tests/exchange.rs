@@ -3,7 +3,7 @@
 use cede_controller::policy::weights::Draft;
 use cede_controller::{FeatureSet, Mlp, Pair, Part, Perspective, Policy, Weights};
 use cede_data::Dataset;
-use cede_exchange::onnx;
+use cede_formats::onnx;
 use cede_sim::ObservationModel;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -83,8 +83,8 @@ fn the_verifier_reads_the_export_as_the_controller_drives_it() {
     let pairs = pairs();
     for words in policies() {
         let policy = Policy::new(&words).unwrap();
-        let bytes = onnx::write(policy.weights());
-        let network = cede_verify::network::onnx::read(&bytes).unwrap();
+        let bytes = onnx::export(policy.weights());
+        let network = cede_nnv_check::onnx::read(&bytes).unwrap();
         for pair in pairs.iter().step_by(10) {
             let raw = features(policy.weights(), pair);
             let raw: Vec<f64> = raw.into_iter().map(f64::from).collect();
@@ -123,7 +123,7 @@ fn onnxruntime_gives_the_controllers_accelerations() {
         let policy = Policy::new(&words).unwrap();
         let rows = pairs.iter().flat_map(|p| features(policy.weights(), p));
         let rows: Vec<u8> = rows.flat_map(f32::to_le_bytes).collect();
-        std::fs::write(&model, onnx::write(policy.weights())).unwrap();
+        std::fs::write(&model, onnx::export(policy.weights())).unwrap();
         std::fs::write(&told, rows).unwrap();
         let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/run_policy.py");
         let mut run = Command::new(&python);

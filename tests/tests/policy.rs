@@ -4,8 +4,8 @@ use cede_controller::policy::embedded;
 use cede_controller::policy::weights::Draft;
 use cede_controller::{Policy, Weights};
 use cede_data::Dataset;
+use cede_formats::property::{Claim, Place, Properties, Setting, StateProperty};
 use cede_sim::ObservationModel;
-use cede_sim::property::{Claim, Place, Properties, Setting, StateProperty};
 use cede_train::run::{Algorithm, Lessons, Run};
 use cede_verify::policy::{Finding, Subject};
 use std::time::{Duration, Instant};
@@ -71,7 +71,7 @@ fn unclaimed(seed: u64) -> Vec<u32> {
 fn breaks(words: &[u32], claim: Claim, setting: &Setting, place: Place) -> bool {
     let policy = Policy::new(words).unwrap();
     let a = |place: Place| f64::from(policy.act(&setting.pair(place))[0]);
-    let slope = |variable: cede_sim::property::Variable| {
+    let slope = |variable: cede_formats::property::Variable| {
         let mut moved = place;
         moved[variable.index()] += 0.05;
         (a(moved) - a(place)) / 0.05

@@ -7,6 +7,5 @@
 mod interval;
 pub mod lemma;
 pub mod margin;
-pub mod network;
 pub mod policy;
 pub mod reach;

@@ -19,9 +19,9 @@ mod search;
 pub(crate) use response::Response;
 pub use search::{Finding, Settled};
 
-use crate::network::{Activation, Feature, InputBox, Layer, Matrix, Network};
 use cede_controller::{FeatureSet, Perspective, Weights};
-use cede_sim::property::Setting;
+use cede_formats::property::Setting;
+use cede_nnv_check::{Activation, AffineEnclosure, InputBox, Layer, Matrix, Network};
 use features::Enclosed;
 
 /// A policy as the verifier sees it: the network that gives the ego's mean, and its features.
@@ -91,7 +91,7 @@ impl<'a> Subject<'a> {
     }
 
     /// The linear functions and radii of the features on a box of states.
-    fn front(&self, region: &InputBox, setting: &Setting) -> Vec<Feature> {
+    fn front(&self, region: &InputBox, setting: &Setting) -> Vec<AffineEnclosure> {
         let enclosed = self.features(region, setting);
         enclosed.into_iter().map(|e| e.feature).collect()
     }

@@ -3,7 +3,7 @@
 use crate::drivers;
 use crate::failure::Failure;
 use cede_data::output;
-use cede_exchange::{onnx, safetensors};
+use cede_formats::{onnx, safetensors};
 use clap::ValueEnum;
 use std::path::PathBuf;
 
@@ -32,7 +32,7 @@ enum Format {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let policy = drivers::policy(args.weights.as_deref())?;
     let bytes = match args.format {
-        Format::Onnx => onnx::write(policy.weights()),
+        Format::Onnx => onnx::export(policy.weights()),
         Format::Safetensors => safetensors::write(policy.weights())
             .map_err(|error| Failure::input(error, "report this as a bug"))?,
     };

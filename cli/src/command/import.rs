@@ -4,9 +4,9 @@ use crate::failure::Failure;
 use cede_controller::policy::features::LIMIT;
 use cede_controller::{FeatureSet, Perspective, Policy};
 use cede_data::output;
-use cede_exchange::description::{features_named, perspective_name, perspective_named};
-use cede_exchange::onnx::{self, ImportError, Told};
-use cede_sim::weights;
+use cede_formats::cede;
+use cede_formats::description::{features_named, perspective_name, perspective_named};
+use cede_formats::onnx::{self, ImportError, Told};
 use std::path::PathBuf;
 
 /// The graph: Sub, Add, Mul, Div and one Clip to ± a number (all optional), one to three hidden layers of at most
@@ -50,10 +50,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         features: args.features,
         perspective: args.perspective,
     };
-    let words = onnx::read(&bytes, told)
+    let words = onnx::import(&bytes, told)
         .map_err(|error| Failure::input(format!("cannot use {path}: {error}"), mend(&error)))?;
     let policy =
-        weights::keep(&words).map_err(|error| Failure::input(error, "report this as a bug"))?;
+        cede::keep(&words).map_err(|error| Failure::input(error, "report this as a bug"))?;
     let mut file: Vec<u8> = Vec::with_capacity(4 * words.len());
     file.extend(words.iter().flat_map(|word| word.to_le_bytes()));
     output::write(&args.out, |out| out.write_all(&file))?;
@@ -72,7 +72,7 @@ fn mend(error: &ImportError) -> &'static str {
         }
         ImportError::Outputs { .. } => "export the means of the commands alone",
         ImportError::Weights(_) => "keep weights within ± 1000 and normalise the features",
-        ImportError::Graph(_) => "see `cede help import` for the graphs that are understood",
+        _ => "see `cede help import` for the graphs that are understood",
     }
 }
 

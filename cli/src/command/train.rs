@@ -6,7 +6,7 @@ use crate::settings::{checked, quoted, with};
 use crate::source::Source;
 use crate::training::{Identity, Training};
 use cede_data::{Dataset, Encounter, Split, output};
-use cede_sim::property::{Properties, StateProperty};
+use cede_formats::property::{Properties, StateProperty};
 use cede_train::driving::episodes::Course;
 use cede_train::driving::judge::judge;
 use cede_train::run::curve::{Panel, Point};

@@ -14,8 +14,8 @@ use crate::algorithm::sac::{self, Sac};
 use crate::driving::episodes::{Course, Reward};
 use crate::driving::policy_view::PolicyView;
 use cede_data::Encounter;
+use cede_formats::property::StateProperty;
 use cede_sim::ObservationModel;
-use cede_sim::property::StateProperty;
 use serde::{Deserialize, Serialize};
 
 /// The algorithms by their names on the command line.

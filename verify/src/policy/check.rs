@@ -7,10 +7,10 @@
 
 use super::Subject;
 use super::interval::{Interval, STATE};
-use crate::network::check::{Bounds, CheckError};
-use crate::network::proof::{Proof, Split};
-use crate::network::{Activation, InputBox};
-use cede_sim::property::Setting;
+use cede_formats::property::Setting;
+use cede_nnv_check::check::{CheckError, neuron_bounds};
+use cede_nnv_check::proof::{Proof, Split};
+use cede_nnv_check::{Activation, InputBox};
 use rayon::prelude::*;
 
 /// How often a leaf may be halved in the attempt to confirm it.
@@ -98,12 +98,10 @@ fn confirmed(
 fn slopes(subject: &Subject<'_>, setting: &Setting, region: &InputBox) -> [Interval; STATE] {
     let network = &subject.network;
     let front = |region: &InputBox| subject.front(region, setting);
-    let mut bounds = Bounds::new(network, Some(&front), region.clone());
-    // Without assumed phases the bounds cannot contradict each other.
-    let _ = bounds.tighten(network);
+    let bounds = neuron_bounds(network, Some(&front), region.clone());
     let features = subject.features(region, setting);
     let mut columns: Vec<[Interval; STATE]> = features.iter().map(|e| e.slopes).collect();
-    for (layer, known) in network.layers().iter().zip(&bounds.layers) {
+    for (layer, known) in network.layers().iter().zip(&bounds) {
         let sum = |i: usize| -> [Interval; STATE] {
             std::array::from_fn(|k| {
                 let terms = layer.weights.row(i).iter().zip(&columns);

@@ -8,11 +8,11 @@
 //! controller's code).
 
 use super::interval::{Dual, Interval, STATE};
-use crate::network::{Feature, InputBox};
 use cede_controller::policy::features::{CREEP, HORIZON, LIMIT};
 use cede_controller::policy::svo::MIN_DISTANCE;
 use cede_controller::{ConflictKind, FeatureSet, RightOfWay};
-use cede_sim::property::Setting;
+use cede_formats::property::Setting;
+use cede_nnv_check::{AffineEnclosure, InputBox};
 
 /// Relative allowance for the `f32` rounding of a feature.
 const SINGLE: f64 = 16.0 * (f32::EPSILON as f64) * 0.5;
@@ -83,7 +83,7 @@ fn features(set: FeatureSet, state: [Dual; STATE], setting: &Setting) -> Option<
 /// A normalised feature on a box of states.
 pub(super) struct Enclosed {
     /// A linear function and a radius; the radius covers the `f32` computation.
-    pub(super) feature: Feature,
+    pub(super) feature: AffineEnclosure,
     /// The ranges of its derivatives.
     pub(super) slopes: [Interval; STATE],
     /// How far the `f32` computation can be from the exact one.
@@ -126,7 +126,7 @@ pub(super) fn enclose(
                 let (all, at) = (normal(all, n), normal(at, n));
                 let steepest = all.slopes.iter().map(|s| s.magnitude()).fold(0.0, f64::max);
                 if !steepest.is_finite() {
-                    let flat = Feature {
+                    let flat = AffineEnclosure {
                         constant: all.value.middle(),
                         slopes: vec![0.0; STATE],
                         radius: all.value.radius() + rounding,
@@ -147,7 +147,7 @@ pub(super) fn enclose(
                     radius += all.slopes[i].radius() * reach * (1.0 + 1e-12);
                 }
                 radius += constant.radius() + 1e-15;
-                let feature = Feature {
+                let feature = AffineEnclosure {
                     constant: constant.middle(),
                     slopes: slopes.to_vec(),
                     radius: radius * (1.0 + 1e-12),

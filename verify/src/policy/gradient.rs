@@ -1,7 +1,7 @@
 //! Bounds of the derivatives of the network's mean by the state.
 
 use super::interval::{Interval, STATE};
-use crate::network::{Activation, Network};
+use cede_nnv_check::{Activation, Network};
 
 /// The range of the (generalised) gradient of output 0 by the state, from the bounds of all
 /// neurons with an activation and the ranges of the features' derivatives.

@@ -4,8 +4,9 @@ use super::Subject;
 use super::gradient::gradient;
 use super::interval::{Interval, STATE};
 use super::search::{MOST, TANH, single_precision_margin};
-use crate::network::{Activation, Bounder, Feature, InputBox};
-use cede_sim::property::Setting;
+use cede_formats::property::Setting;
+use cede_nnv::Bounder;
+use cede_nnv_check::{Activation, AffineEnclosure, InputBox};
 
 /// Bounds a policy's acceleration on boxes of states, in one setting.
 pub(crate) struct Response<'a> {
@@ -41,7 +42,7 @@ impl<'a> Response<'a> {
         };
         let network = &self.subject.network;
         let enclosed = self.subject.features(&region, &self.setting);
-        let features: Vec<Feature> = enclosed.iter().map(|e| e.feature.clone()).collect();
+        let features: Vec<AffineEnclosure> = enclosed.iter().map(|e| e.feature.clone()).collect();
         let mut bounds = self.bounder.unbounded();
         self.bounder
             .worker()
@@ -65,10 +66,10 @@ impl<'a> Response<'a> {
             .subject
             .front(&at_centre, &self.setting)
             .iter()
-            .map(|f| f.range(&at_centre))
+            .map(|f| range(f, &at_centre))
             .collect();
         let middle = self.through(values, None).wider(rounding);
-        let whole: Vec<Interval> = features.iter().map(|f| f.range(&region)).collect();
+        let whole: Vec<Interval> = features.iter().map(|f| range(f, &region)).collect();
         let natural = self.through(whole, Some(&bounds)).wider(rounding);
         let mean =
             sides
@@ -119,18 +120,18 @@ impl<'a> Response<'a> {
     }
 }
 
-impl Feature {
-    /// The input's range on a box.
-    fn range(&self, region: &InputBox) -> Interval {
-        let sides = region.lower.iter().zip(&region.upper);
-        self.slopes
-            .iter()
-            .zip(sides)
-            .fold(Interval::point(self.constant), |sum, (&s, (&lo, &hi))| {
-                sum.add(Interval::new(lo, hi).scale(s))
-            })
-            .wider(self.radius)
-    }
+/// The feature's range on a box.
+fn range(feature: &AffineEnclosure, region: &InputBox) -> Interval {
+    let sides = region.lower.iter().zip(&region.upper);
+    feature
+        .slopes
+        .iter()
+        .zip(sides)
+        .fold(
+            Interval::point(feature.constant),
+            |sum, (&s, (&lo, &hi))| sum.add(Interval::new(lo, hi).scale(s)),
+        )
+        .wider(feature.radius)
 }
 
 /// 3·tanh with what its `f32` computation may add.

@@ -4,12 +4,12 @@ use super::Subject;
 use super::check::slopes_hold;
 use super::gradient::gradient;
 use super::interval::Interval;
-use crate::network::{
-    Bounder, Feature, Halfspace, InputBox, Network, check,
-    proof::{Cell, Proof, Split},
-};
 use cede_controller::Policy;
-use cede_sim::property::{Claim, Place, Setting, StateProperty, Variable};
+use cede_formats::property::{Claim, Place, Setting, StateProperty, Variable};
+use cede_nnv::{Bounder, Worker};
+use cede_nnv_check::check::{self, CheckError};
+use cede_nnv_check::proof::{Cell, Proof, Split};
+use cede_nnv_check::{AffineEnclosure, Halfspace, InputBox, Network, Query};
 use rayon::prelude::*;
 use std::time::Instant;
 
@@ -146,7 +146,7 @@ impl<'a> Task<'a> {
         let region = region(property);
         let enclosed = subject.features(&region, &setting);
         let roundings: Vec<f64> = enclosed.iter().map(|e| e.rounding).collect();
-        let features: Vec<Feature> = enclosed.into_iter().map(|e| e.feature).collect();
+        let features: Vec<AffineEnclosure> = enclosed.into_iter().map(|e| e.feature).collect();
         let mut root = Bounder::new(&subject.network, None).unbounded();
         Bounder::new(&subject.network, None)
             .worker()
@@ -224,9 +224,9 @@ impl<'a> Task<'a> {
         (finding, proof)
     }
 
-    fn step(&self, worker: &mut crate::network::Worker<'_>, mut node: Node) -> Step {
+    fn step(&self, worker: &mut Worker<'_>, mut node: Node) -> Step {
         let enclosed = self.subject.features(&node.region, &self.setting);
-        let features: Vec<Feature> = enclosed.iter().map(|e| e.feature.clone()).collect();
+        let features: Vec<AffineEnclosure> = enclosed.iter().map(|e| e.feature.clone()).collect();
         worker.tighten(&node.region, &features, &mut node.bounds);
         let mut scores = vec![0.0; node.region.lower.len()];
         let mut candidates = vec![middle(&node.region)];
@@ -288,18 +288,18 @@ impl<'a> Task<'a> {
         f64::from(Policy::from(self.subject.weights).act(&self.setting.pair(state))[0])
     }
 
-    fn check(&self, proof: &Proof) -> Result<usize, check::CheckError> {
+    fn check(&self, proof: &Proof) -> Result<usize, CheckError> {
         let region = region(self.property);
         let Some(atom) = &self.atom else {
             let holds = |slopes| slope_holds(self.property.claim, slopes);
             return slopes_hold(self.subject, &self.setting, region, holds, proof);
         };
-        let query = crate::network::Query {
+        let query = Query {
             region,
             unsafe_set: vec![vec![atom.clone()]],
         };
         let front = |region: &InputBox| self.subject.front(region, &self.setting);
-        check::check_behind(&self.subject.network, Some(&front), &query, proof)
+        check::check_composed(&self.subject.network, Some(&front), &query, proof)
     }
 }
 
@@ -354,7 +354,7 @@ fn unsafe_side(claim: Claim, margin: f64) -> Option<Halfspace> {
 /// inputs with their `errors` given: the usual bound for sums of products in any order, carried through the layers.
 pub(super) fn single_precision_margin(
     network: &Network,
-    features: &[Feature],
+    features: &[AffineEnclosure],
     region: &InputBox,
     bounds: &[(f64, f64)],
     mut errors: Vec<f64>,

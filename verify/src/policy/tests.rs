@@ -2,7 +2,7 @@ use super::search::region;
 use super::*;
 use cede_controller::policy::weights::Draft;
 use cede_controller::{ConflictKind, Mlp, Policy, RightOfWay};
-use cede_sim::property::{Claim, Kind, Right, StateProperty, Variable};
+use cede_formats::property::{Claim, Kind, Right, StateProperty, Variable};
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;

@@ -1,7 +1,7 @@
 //! Scenarios as a readable file.
 
 use cede_controller::{ConflictKind, Footprint, Path, Point, RightOfWay, Route, Scene};
-use cede_sim::property::{Right, Setting};
+use cede_formats::property::{Right, Setting};
 use serde::Deserialize;
 
 /// A file of scenarios (TOML, `[[scenario]]`).

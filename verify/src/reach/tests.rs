@@ -6,7 +6,7 @@ use cede_controller::policy::weights::Draft;
 use cede_controller::{
     Contract, Controller, Observation, Part, Point, Policy, Pose, Vehicle, Weights,
 };
-use cede_sim::property::Right;
+use cede_formats::property::Right;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::interrupt;
 use crate::training::{Identity, Training};
 use cede_data::{Encounter, output};
-use cede_sim::weights;
+use cede_formats::cede;
 use cede_train::driving::episodes::Course;
 use cede_train::run::curve::{Curve, Panel};
 use cede_train::run::provenance::{Provenance, data_hash};
@@ -96,7 +96,7 @@ impl Job<'_> {
         let curve = std::mem::take(&mut training.curve);
         write(&file, &words, &curve)?;
         training.clean();
-        let policy = weights::keep(&words).map_err(|error| self.diverged(&error))?;
+        let policy = cede::keep(&words).map_err(|error| self.diverged(&error))?;
         Ok(Trained { policy, curve })
     }
 
@@ -107,7 +107,7 @@ impl Job<'_> {
 
 /// What an earlier time left, if it is the same training.
 fn finished(file: &Path, provenance: &Provenance) -> Option<Trained> {
-    let policy = weights::load(file).ok()?;
+    let policy = cede::load(file).ok()?;
     let curve = serde_json::from_slice(&std::fs::read(curve_file(file)).ok()?).ok()?;
     let same = policy.weights().provenance() == provenance.hash();
     same.then_some(Trained { policy, curve })

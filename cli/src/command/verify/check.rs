@@ -2,7 +2,7 @@
 
 use super::network::read;
 use crate::failure::Failure;
-use cede_verify::network::Certificate;
+use cede_nnv_check::Certificate;
 use clap::Args;
 use miette::{IntoDiagnostic, WrapErr};
 use std::io::Write as _;

@@ -2,7 +2,8 @@
 
 use crate::failure::Failure;
 use cede_data::output;
-use cede_verify::network::{self as verifier, Answer, Branching, Certificate, Report, Settings};
+use cede_nnv::{self as verifier, Answer, Branching, Report, SearchOptions};
+use cede_nnv_check::{self as trusted, Certificate};
 use clap::{Args, ValueEnum};
 use miette::{IntoDiagnostic, WrapErr, miette};
 use std::io::Write as _;
@@ -71,19 +72,18 @@ impl Network {
                 self.timeout
             ))
         })?;
-        let settings = Settings {
-            timeout,
-            seed: self.seed,
-            branching: self.branching.into(),
-            record: self.certificate.is_some(),
-        };
+        let options = SearchOptions::default()
+            .timeout(timeout)
+            .seed(self.seed)
+            .branching(self.branching.into())
+            .record(self.certificate.is_some());
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(self.threads)
             .build()
             .into_diagnostic();
         let pool = pool.map_err(Failure::Input)?;
         let report = pool
-            .install(|| verifier::verify(&network, &property, settings))
+            .install(|| verifier::verify(&network, &property, options))
             .into_diagnostic();
         let mut report = report.map_err(Failure::Input)?;
         if let (Some(path), Answer::Unsat) = (&self.certificate, &report.answer) {
@@ -104,43 +104,19 @@ impl Network {
         Ok(())
     }
 
-    fn told(&self, network: &verifier::Network, report: &Report, seconds: f64) -> String {
-        let word = word(&report.answer);
-        let witness = match &report.answer {
-            Answer::Sat(x) => Some((x, network.run(x).values)),
-            _ => None,
-        };
-        if self.json {
-            let witness = witness.map(|(x, y)| serde_json::json!({ "x": x, "y": y }));
-            return serde_json::json!({
-                "answer": word, "semantics": "real", "regions": report.regions,
-                "seconds": seconds, "witness": witness,
-            })
-            .to_string();
+    fn told(&self, network: &trusted::Network, report: &Report, seconds: f64) -> String {
+        if !self.json {
+            return report.answer.text(network);
         }
-        let Some((x, y)) = witness else {
-            return word.to_owned();
+        let witness = match &report.answer {
+            Answer::Sat(x) => serde_json::json!({ "x": x, "y": network.run(x).values }),
+            _ => serde_json::Value::Null,
         };
-        let pairs = |name: &str, values: &[f64]| -> Vec<String> {
-            values
-                .iter()
-                .enumerate()
-                .map(|(i, v)| format!("({name}_{i} {v:?})"))
-                .collect()
-        };
-        format!(
-            "{word}\n({})",
-            [pairs("X", x), pairs("Y", &y)].concat().join("\n")
-        )
-    }
-}
-
-fn word(answer: &Answer) -> &'static str {
-    match answer {
-        Answer::Unsat => "unsat",
-        Answer::Sat(_) => "sat",
-        Answer::Timeout => "timeout",
-        Answer::Unknown => "unknown",
+        serde_json::json!({
+            "answer": report.answer.word(), "semantics": "real", "regions": report.regions,
+            "seconds": seconds, "witness": witness,
+        })
+        .to_string()
     }
 }
 
@@ -148,7 +124,7 @@ fn word(answer: &Answer) -> &'static str {
 pub(crate) fn read(
     onnx: &Path,
     vnnlib: &Path,
-) -> Result<(verifier::Network, verifier::Property), Failure> {
+) -> Result<(trusted::Network, trusted::Property), Failure> {
     let named = |path: &Path, help: &'static str| {
         let place = path.display().to_string();
         move |error: miette::Report| {
@@ -156,10 +132,10 @@ pub(crate) fn read(
         }
     };
     let bytes = std::fs::read(onnx).into_diagnostic();
-    let network = bytes.and_then(|bytes| verifier::onnx::read(&bytes).into_diagnostic());
+    let network = bytes.and_then(|bytes| trusted::onnx::read(&bytes).into_diagnostic());
     let network = network.map_err(named(onnx, "--onnx: a feed-forward network in ONNX"))?;
     let text = std::fs::read_to_string(vnnlib).into_diagnostic();
-    let property = text.and_then(|text| verifier::vnnlib::read(&text).into_diagnostic());
+    let property = text.and_then(|text| trusted::vnnlib::read(&text).into_diagnostic());
     let property = property
         .wrap_err("VNN-LIB")
         .map_err(named(vnnlib, "--vnnlib: a property in VNN-LIB 1.0"))?;

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use cede_controller::policy::weights::words;
 use cede_controller::{Perspective, Weights};
-use cede_sim::property::{Properties, StateProperty};
+use cede_formats::property::{Properties, StateProperty};
 use cede_verify::policy::{Finding, Settled, Subject};
 use clap::Args;
 use miette::{IntoDiagnostic, WrapErr, miette};

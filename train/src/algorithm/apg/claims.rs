@@ -10,7 +10,7 @@ use crate::driving::inputs::Inputs;
 use crate::driving::slopes::slopes;
 use crate::nn::network::{Delta, Network, Tape};
 use cede_controller::policy::MAX_ACCELERATION;
-use cede_sim::property::{Claim, Place, Setting, StateProperty};
+use cede_formats::property::{Claim, Place, Setting, StateProperty};
 use rand::RngExt;
 use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
@@ -316,7 +316,7 @@ mod tests {
     use super::*;
     use crate::nn::adam::Adam;
     use cede_controller::FeatureSet;
-    use cede_sim::property::Properties;
+    use cede_formats::property::Properties;
     use rand::SeedableRng;
 
     fn properties() -> Vec<StateProperty> {

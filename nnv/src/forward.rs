@@ -1,0 +1,90 @@
+//! The network in plain `f64`, fast, with gradients: for the search for counterexamples. Nothing
+//! here is rounded soundly; what it finds is confirmed by [`Network::run`].
+
+use super::kernel::add_scaled;
+use cede_nnv_check::Halfspace;
+use cede_nnv_check::{Activation, Network};
+
+/// Memory of runs through a network.
+pub(super) struct Runner<'a> {
+    network: &'a Network,
+    /// Weights by input neuron.
+    columns: Vec<Vec<f64>>,
+    /// Output of every layer.
+    values: Vec<Vec<f64>>,
+    gradient: Vec<f64>,
+    next: Vec<f64>,
+}
+
+impl<'a> Runner<'a> {
+    pub(super) fn new(network: &'a Network) -> Self {
+        let columns = network
+            .layers()
+            .iter()
+            .map(|l| {
+                (0..l.inputs())
+                    .flat_map(|j| (0..l.outputs()).map(move |i| l.weights.row(i)[j]))
+                    .collect()
+            })
+            .collect();
+        let values = network
+            .layers()
+            .iter()
+            .map(|l| vec![0.0; l.outputs()])
+            .collect();
+        Self {
+            network,
+            columns,
+            values,
+            gradient: Vec::new(),
+            next: Vec::new(),
+        }
+    }
+
+    /// The outputs.
+    #[inline(always)]
+    pub(super) fn run(&mut self, input: &[f64]) -> &[f64] {
+        for (index, layer) in self.network.layers().iter().enumerate() {
+            let (before, rest) = self.values.split_at_mut(index);
+            let from = before.last().map_or(input, Vec::as_slice);
+            let sums = &mut rest[0];
+            sums.copy_from_slice(&layer.bias);
+            for (&x, column) in from
+                .iter()
+                .zip(self.columns[index].chunks_exact(layer.outputs()))
+            {
+                if x != 0.0 {
+                    add_scaled(sums, column, x);
+                }
+            }
+            match layer.activation {
+                Activation::Identity => {}
+                activation => sums.iter_mut().for_each(|z| *z = activation.apply(*z)),
+            }
+        }
+        self.values.last().map_or(&[], Vec::as_slice)
+    }
+
+    /// The gradient of an atom's excess at the inputs of the last run.
+    #[inline(always)]
+    pub(super) fn gradient(&mut self, atom: &Halfspace) -> &[f64] {
+        self.gradient.clone_from(&atom.coefficients);
+        for (layer, values) in self.network.layers().iter().zip(&self.values).rev() {
+            self.next.clear();
+            self.next.resize(layer.inputs(), 0.0);
+            for (i, (&g, &y)) in self.gradient.iter().zip(values).enumerate() {
+                let g = match layer.activation {
+                    Activation::Identity => g,
+                    Activation::Relu if y > 0.0 => g,
+                    Activation::Relu => 0.0,
+                    Activation::Tanh => g * (1.0 - y * y),
+                };
+                if g != 0.0 {
+                    add_scaled(&mut self.next, layer.weights.row(i), g);
+                }
+            }
+            std::mem::swap(&mut self.gradient, &mut self.next);
+        }
+        &self.gradient
+    }
+}

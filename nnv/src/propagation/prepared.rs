@@ -1,0 +1,73 @@
+//! The network as the propagation wants it.
+
+use crate::relaxation::Lines;
+use cede_nnv_check::rounding::gamma;
+use cede_nnv_check::{Activation, Halfspace, Network};
+
+/// A network and the atoms of a query as the propagation wants them: weights by input neuron.
+pub(crate) struct Prepared {
+    pub(crate) inputs: usize,
+    pub(super) layers: Vec<PreparedLayer>,
+    /// Neurons with an activation, over all layers.
+    pub(crate) neurons: usize,
+    /// How an unstable ReLU is enclosed: [`Lines::relu`]; tests plant unsound lines here.
+    pub(crate) enclose: fn(f64, f64) -> Lines,
+}
+
+pub(super) struct PreparedLayer {
+    pub(super) outputs: usize,
+    /// One row for each *input* of the layer.
+    pub(super) columns: Vec<f64>,
+    pub(super) bias: Vec<f64>,
+    pub(super) activation: Activation,
+    pub(super) relative_error: f64,
+    pub(super) uncertainty: f64,
+    /// Index of its first neuron among all neurons with an activation.
+    pub(super) first: usize,
+}
+
+impl Prepared {
+    /// Prepares the network followed by one more layer, the atoms coefficients · y − bound.
+    pub(crate) fn new(network: &Network, atoms: &[&Halfspace]) -> Self {
+        let mut layers = Vec::new();
+        let mut neurons = 0;
+        for layer in network.layers() {
+            let (inputs, outputs) = (layer.inputs(), layer.outputs());
+            let columns = (0..inputs)
+                .flat_map(|j| (0..outputs).map(move |i| layer.weights.row(i)[j]))
+                .collect();
+            layers.push(PreparedLayer {
+                outputs,
+                columns,
+                bias: layer.bias.clone(),
+                activation: layer.activation,
+                relative_error: layer.relative_error(),
+                uncertainty: 2.0 * layer.uncertainty,
+                first: neurons,
+            });
+            neurons += if layer.activation == Activation::Identity {
+                0
+            } else {
+                outputs
+            };
+        }
+        let outputs = network.outputs();
+        layers.push(PreparedLayer {
+            outputs: atoms.len(),
+            columns: (0..outputs)
+                .flat_map(|j| atoms.iter().map(move |a| a.coefficients[j]))
+                .collect(),
+            bias: atoms.iter().map(|a| -a.bound).collect(),
+            activation: Activation::Identity,
+            relative_error: gamma(outputs + 4),
+            uncertainty: 0.0,
+            first: neurons,
+        });
+        Self {
+            inputs: network.inputs(),
+            layers,
+            neurons,
+            enclose: Lines::relu,
+        }
+    }
+}
