@@ -1,9 +1,9 @@
 //! `cede train`: from encounters to a weights file.
 
 use crate::failure::Failure;
-use crate::interrupt;
 use crate::settings::{checked, quoted, with};
 use crate::source::Source;
+use crate::threads::Threads;
 use crate::training::{Identity, Training};
 use cede_sim::data::Split;
 use cede_sim::property::{Properties, StateProperty};
@@ -22,14 +22,38 @@ use std::time::{Duration, Instant};
 /// Options of `cede train`.
 #[derive(clap::Args)]
 pub(crate) struct Args {
+    #[command(flatten)]
+    method: Method,
+    #[command(flatten)]
+    order: Option<Order>,
+    /// Print the algorithm's settings as TOML and stop; no other option is needed
+    #[arg(long)]
+    show_settings: bool,
+}
+
+/// How to learn.
+#[derive(clap::Args)]
+struct Method {
     /// How to learn
     #[arg(value_enum)]
     algorithm: Choice,
+    /// Settings that differ from the defaults, as TOML
+    #[arg(long, value_name = "FILE.toml")]
+    settings: Option<PathBuf>,
+    /// One setting that differs, as in `--set width=128` or `--set rates.policy=3e-4`; repeatable
+    #[arg(long, value_name = "NAME=VALUE")]
+    set: Vec<String>,
+}
+
+/// What to learn from, and where the result goes.
+#[derive(clap::Args)]
+#[command(mut_arg("data", |data| data.required(false).required_unless_present("show_settings")))]
+struct Order {
     #[command(flatten)]
     source: Source,
-    /// Seed of the synthetic encounters; training has its own
-    #[arg(long, default_value_t = 1, value_name = "SEED")]
-    data_seed: u64,
+    /// Seed of the synthetic encounters; training has its own [default: 1]
+    #[arg(long, value_name = "SEED")]
+    data_seed: Option<u64>,
     /// In a refinement, hold the network to what it was wherever two vehicles of the training files
     /// cross or merge
     #[arg(long)]
@@ -40,15 +64,14 @@ pub(crate) struct Args {
     /// Seed of every random choice of the training
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Settings that differ from the defaults, as TOML
-    #[arg(long, value_name = "FILE.toml")]
-    settings: Option<PathBuf>,
-    /// One setting that differs, as in `--set width=128` or `--set rates.policy=3e-4`; repeatable
-    #[arg(long, value_name = "NAME=VALUE")]
-    set: Vec<String>,
     /// The weights file to write; its provenance goes beside it, to FILE.txt, and checkpoints to
     /// FILE.checkpoint
-    #[arg(long, value_name = "FILE.cede")]
+    #[arg(
+        long,
+        value_name = "FILE.cede",
+        required = false,
+        required_unless_present = "show_settings"
+    )]
     out: PathBuf,
     /// Folder for the training curves: CSV, and TensorBoard's event file
     #[arg(long, value_name = "DIR")]
@@ -56,17 +79,13 @@ pub(crate) struct Args {
     /// Go on from the last checkpoint of the same run
     #[arg(long)]
     resume: bool,
-    /// Print the algorithm's settings as TOML and stop
-    #[arg(long)]
-    show_settings: bool,
-    /// Number of threads; the result does not depend on it [default: all cores]
-    #[arg(long)]
-    threads: Option<usize>,
+    #[command(flatten)]
+    threads: Threads,
 }
 
 /// An algorithm by its name.
 #[derive(Clone, Copy)]
-struct Choice(Algorithm);
+pub(super) struct Choice(pub(super) Algorithm);
 
 impl clap::ValueEnum for Choice {
     fn value_variants<'a>() -> &'a [Self] {
@@ -87,53 +106,22 @@ const JUDGE_EVERY: Duration = Duration::from_secs(5);
 /// Encounters of the judgement for the progress bar.
 const JUDGED: usize = 60;
 
+/// Seed of the synthetic encounters, where none is given.
+const DATA_SEED: u64 = 1;
+
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    interrupt::defer();
-    if let Some(threads) = args.threads {
-        // Fails only if the pool is there already: nothing has used it yet.
-        let _ = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build_global();
+    let settings = args.method.settings()?;
+    match &args.order {
+        Some(order) if !args.show_settings => order.run(&args.method, settings),
+        _ => {
+            print!("{}", settings.text());
+            Ok(())
+        }
     }
-    let settings = args.settings()?;
-    if args.show_settings {
-        print!("{}", settings.text());
-        return Ok(());
-    }
-    let dataset = args.source.load(args.data_seed)?;
-    let own: Vec<&Encounter> = dataset.split(Split::Train).collect();
-    if own.is_empty() {
-        return Err(Failure::input(
-            "there is nothing to learn from: no encounters in the training files",
-            "add training files to the folder, or name another site",
-        ));
-    }
-    let every = args.every_pair.then(|| dataset.every_pair());
-    let beside = every.iter().flat_map(|every| every.split(Split::Train));
-    let beside: Vec<&Encounter> = beside.collect();
-    let encounters = || own.iter().chain(&beside).copied();
-    let (claims, text) = args.claims()?;
-    let hash = data_hash(encounters(), &text);
-    let lessons = Lessons {
-        claims,
-        ..Lessons::new(&own, &beside)
-    };
-    let identity = Identity {
-        data: hash,
-        algorithm: args.algorithm.0,
-        seed: args.seed,
-        settings,
-    };
-    let provenance = args.provenance(&identity, encounters().count());
-    let mut training = args.begin(identity, &lessons, args.panel(&dataset, &lessons))?;
-    args.advance(&mut training, &lessons)?;
-    args.write(&training.run, &provenance)?;
-    training.clean();
-    Ok(())
 }
 
-impl Args {
+impl Method {
     fn settings(&self) -> Result<Settings, Failure> {
         let mut settings = self.algorithm.0.settings();
         if let Some(path) = &self.settings {
@@ -144,17 +132,56 @@ impl Args {
         }
         checked(settings)
     }
+}
+
+impl Order {
+    fn run(&self, method: &Method, settings: Settings) -> Result<(), Failure> {
+        let algorithm = method.algorithm.0;
+        if self.every_pair && !algorithm.looks_beside() {
+            return Err(Failure::ignored("--every-pair", algorithm.name()));
+        }
+        let (claims, text) = self.claims(algorithm)?;
+        self.threads.start()?;
+        let dataset = self
+            .source
+            .load_seeded("--data-seed", self.data_seed, DATA_SEED)?;
+        let own: Vec<&Encounter> = dataset.split(Split::Train).collect();
+        if own.is_empty() {
+            return Err(Failure::input(
+                "there is nothing to learn from: no encounters in the training files",
+                "add training files to the folder, or name another site",
+            ));
+        }
+        let every = self.every_pair.then(|| dataset.every_pair());
+        let beside = every.iter().flat_map(|every| every.split(Split::Train));
+        let beside: Vec<&Encounter> = beside.collect();
+        let encounters = || own.iter().chain(&beside).copied();
+        let hash = data_hash(encounters(), &text);
+        let lessons = Lessons {
+            claims,
+            ..Lessons::new(&own, &beside)
+        };
+        let identity = Identity {
+            data: hash,
+            algorithm,
+            seed: self.seed,
+            settings,
+        };
+        let provenance = self.provenance(method, &identity, encounters().count());
+        let mut training = self.begin(identity, &lessons, self.panel(&dataset, &lessons))?;
+        self.advance(&mut training, &lessons)?;
+        self.write(&training.run, &provenance)?;
+        training.clean();
+        Ok(())
+    }
 
     /// What is to be claimed of the policy, and the text that says so.
-    fn claims(&self) -> Result<(Vec<StateProperty>, String), Failure> {
+    fn claims(&self, algorithm: Algorithm) -> Result<(Vec<StateProperty>, String), Failure> {
         let Some(path) = &self.claims else {
             return Ok(Default::default());
         };
-        if !matches!(self.algorithm.0, Algorithm::Apg) {
-            return Err(Failure::input(
-                format!("{} learns no claims", self.algorithm.0.name()),
-                "leave out --claims, or train apg",
-            ));
+        if !matches!(algorithm, Algorithm::Apg) {
+            return Err(Failure::ignored("--claims", algorithm.name()));
         }
         let text = read(path)?;
         let properties = Properties::read(&text)
@@ -219,22 +246,20 @@ impl Args {
         done
     }
 
-    fn provenance(&self, identity: &Identity, encounters: usize) -> Provenance {
-        let synthetic = self.source.data == "synthetic";
-        let data = if synthetic {
-            format!("synthetic, seed {}", self.data_seed)
-        } else {
-            format!("recordings of {}", self.source.site)
-        };
-        let mut command = format!("cede train {}", self.algorithm.0.name());
-        if synthetic {
-            command += &format!(
-                " --data synthetic --encounters {} --data-seed {}",
-                self.source.encounters, self.data_seed
+    fn provenance(&self, method: &Method, identity: &Identity, encounters: usize) -> Provenance {
+        let algorithm = method.algorithm.0.name();
+        let mut command = format!("cede train {algorithm}");
+        let data = if self.source.is_synthetic() {
+            let (least, seed) = (
+                self.source.encounters(),
+                self.data_seed.unwrap_or(DATA_SEED),
             );
+            command += &format!(" --data synthetic --encounters {least} --data-seed {seed}");
+            format!("synthetic, seed {seed}")
         } else {
-            command += &format!(" --data DIR --site {}", self.source.site);
-        }
+            command += &format!(" --data DIR --site {}", self.source.site());
+            format!("recordings of {}", self.source.site())
+        };
         if self.every_pair {
             command += " --every-pair";
         }
@@ -242,14 +267,14 @@ impl Args {
             command += &format!(" --claims {}", path.display());
         }
         command += &format!(" --seed {}", self.seed);
-        for set in &self.set {
+        for set in &method.set {
             command += &format!(" --set {set}");
         }
-        if self.settings.is_some() {
+        if method.settings.is_some() {
             command += " --settings FILE.toml";
         }
         Provenance {
-            algorithm: self.algorithm.0.name().to_owned(),
+            algorithm: algorithm.to_owned(),
             settings: identity.settings.text(),
             seed: self.seed,
             data,
