@@ -21,11 +21,22 @@ use std::time::{Duration, Instant};
 
 /// Options of `cede train`.
 #[derive(clap::Args)]
+#[command(mut_arg("data", |data| data.required(false).required_unless_present("show_settings")))]
 pub(crate) struct Args {
     #[command(flatten)]
     method: Method,
     #[command(flatten)]
-    order: Option<Order>,
+    source: Option<Source>,
+    /// The weights file to write; its provenance goes beside it, to FILE.txt, and checkpoints to
+    /// FILE.checkpoint
+    #[arg(
+        long,
+        value_name = "FILE.cede",
+        required_unless_present = "show_settings"
+    )]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    options: Options,
     /// Print the algorithm's settings as TOML and stop; no other option is needed
     #[arg(long)]
     show_settings: bool,
@@ -45,12 +56,9 @@ struct Method {
     set: Vec<String>,
 }
 
-/// What to learn from, and where the result goes.
+/// What else can be said of a training.
 #[derive(clap::Args)]
-#[command(mut_arg("data", |data| data.required(false).required_unless_present("show_settings")))]
-struct Order {
-    #[command(flatten)]
-    source: Source,
+struct Options {
     /// Seed of the synthetic encounters; training has its own [default: 1]
     #[arg(long, value_name = "SEED")]
     data_seed: Option<u64>,
@@ -64,15 +72,6 @@ struct Order {
     /// Seed of every random choice of the training
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// The weights file to write; its provenance goes beside it, to FILE.txt, and checkpoints to
-    /// FILE.checkpoint
-    #[arg(
-        long,
-        value_name = "FILE.cede",
-        required = false,
-        required_unless_present = "show_settings"
-    )]
-    out: PathBuf,
     /// Folder for the training curves: CSV, and TensorBoard's event file
     #[arg(long, value_name = "DIR")]
     log: Option<PathBuf>,
@@ -81,6 +80,14 @@ struct Order {
     resume: bool,
     #[command(flatten)]
     threads: Threads,
+}
+
+/// A training as it was ordered.
+struct Order<'a> {
+    method: &'a Method,
+    source: &'a Source,
+    out: &'a Path,
+    options: &'a Options,
 }
 
 /// An algorithm by its name.
@@ -112,8 +119,16 @@ const DATA_SEED: u64 = 1;
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let settings = args.method.settings()?;
-    match &args.order {
-        Some(order) if !args.show_settings => order.run(&args.method, settings),
+    match (&args.source, &args.out) {
+        (Some(source), Some(out)) if !args.show_settings => {
+            let order = Order {
+                method: &args.method,
+                source,
+                out,
+                options: &args.options,
+            };
+            order.run(settings)
+        }
         _ => {
             print!("{}", settings.text());
             Ok(())
@@ -134,17 +149,17 @@ impl Method {
     }
 }
 
-impl Order {
-    fn run(&self, method: &Method, settings: Settings) -> Result<(), Failure> {
-        let algorithm = method.algorithm.0;
-        if self.every_pair && !algorithm.looks_beside() {
+impl Order<'_> {
+    fn run(&self, settings: Settings) -> Result<(), Failure> {
+        let algorithm = self.method.algorithm.0;
+        if self.options.every_pair && !algorithm.looks_beside() {
             return Err(Failure::ignored("--every-pair", algorithm.name()));
         }
         let (claims, text) = self.claims(algorithm)?;
-        self.threads.start()?;
+        self.options.threads.start()?;
         let dataset = self
             .source
-            .load_seeded("--data-seed", self.data_seed, DATA_SEED)?;
+            .load_seeded("--data-seed", self.options.data_seed, DATA_SEED)?;
         let own: Vec<&Encounter> = dataset.split(Split::Train).collect();
         if own.is_empty() {
             return Err(Failure::input(
@@ -152,7 +167,7 @@ impl Order {
                 "add training files to the folder, or name another site",
             ));
         }
-        let every = self.every_pair.then(|| dataset.every_pair());
+        let every = self.options.every_pair.then(|| dataset.every_pair());
         let beside = every.iter().flat_map(|every| every.split(Split::Train));
         let beside: Vec<&Encounter> = beside.collect();
         let encounters = || own.iter().chain(&beside).copied();
@@ -164,10 +179,10 @@ impl Order {
         let identity = Identity {
             data: hash,
             algorithm,
-            seed: self.seed,
+            seed: self.options.seed,
             settings,
         };
-        let provenance = self.provenance(method, &identity, encounters().count());
+        let provenance = self.provenance(&identity, encounters().count());
         let mut training = self.begin(identity, &lessons, self.panel(&dataset, &lessons))?;
         self.advance(&mut training, &lessons)?;
         self.write(&training.run, &provenance)?;
@@ -177,7 +192,7 @@ impl Order {
 
     /// What is to be claimed of the policy, and the text that says so.
     fn claims(&self, algorithm: Algorithm) -> Result<(Vec<StateProperty>, String), Failure> {
-        let Some(path) = &self.claims else {
+        let Some(path) = &self.options.claims else {
             return Ok(Default::default());
         };
         if !matches!(algorithm, Algorithm::Apg) {
@@ -191,9 +206,9 @@ impl Order {
 
     fn log(&self) -> Result<Option<Log>, Failure> {
         let open = |folder: &PathBuf| {
-            Log::open(folder, self.resume).map_err(|error| unwritable(folder, &error))
+            Log::open(folder, self.options.resume).map_err(|error| unwritable(folder, &error))
         };
-        self.log.as_ref().map(open).transpose()
+        self.options.log.as_ref().map(open).transpose()
     }
 
     fn checkpoint(&self) -> PathBuf {
@@ -202,7 +217,7 @@ impl Order {
 
     /// What the curve is drawn from; without `--log` there is none.
     fn panel<'e>(&self, dataset: &'e Dataset, lessons: &'e Lessons<'e>) -> Option<Panel<'e>> {
-        self.log.as_ref().map(|_| Panel {
+        self.options.log.as_ref().map(|_| Panel {
             train: &lessons.courses,
             validation: dataset.split(Split::Validation).map(Course::new).collect(),
         })
@@ -215,7 +230,7 @@ impl Order {
         panel: Option<Panel<'e>>,
     ) -> Result<Training<'e>, Failure> {
         let checkpoint = self.checkpoint();
-        if self.resume {
+        if self.options.resume {
             Training::resume(identity, lessons, panel, checkpoint)
         } else {
             Ok(Training::new(identity, lessons, panel, checkpoint))
@@ -227,7 +242,7 @@ impl Order {
         let mut bar = Bar::new(lessons);
         let done = training.finish(|report, run, point| {
             bar.show(report, run);
-            let (Some(log), Some(folder)) = (&mut log, &self.log) else {
+            let (Some(log), Some(folder)) = (&mut log, &self.options.log) else {
                 return Ok(());
             };
             let judged = point.map(scalars).unwrap_or_default();
@@ -246,13 +261,13 @@ impl Order {
         done
     }
 
-    fn provenance(&self, method: &Method, identity: &Identity, encounters: usize) -> Provenance {
-        let algorithm = method.algorithm.0.name();
+    fn provenance(&self, identity: &Identity, encounters: usize) -> Provenance {
+        let algorithm = self.method.algorithm.0.name();
         let mut command = format!("cede train {algorithm}");
         let data = if self.source.is_synthetic() {
             let (least, seed) = (
                 self.source.encounters(),
-                self.data_seed.unwrap_or(DATA_SEED),
+                self.options.data_seed.unwrap_or(DATA_SEED),
             );
             command += &format!(" --data synthetic --encounters {least} --data-seed {seed}");
             format!("synthetic, seed {seed}")
@@ -260,23 +275,23 @@ impl Order {
             command += &format!(" --data DIR --site {}", self.source.site());
             format!("recordings of {}", self.source.site())
         };
-        if self.every_pair {
+        if self.options.every_pair {
             command += " --every-pair";
         }
-        if let Some(path) = &self.claims {
+        if let Some(path) = &self.options.claims {
             command += &format!(" --claims {}", path.display());
         }
-        command += &format!(" --seed {}", self.seed);
-        for set in &method.set {
+        command += &format!(" --seed {}", self.options.seed);
+        for set in &self.method.set {
             command += &format!(" --set {set}");
         }
-        if method.settings.is_some() {
+        if self.method.settings.is_some() {
             command += " --settings FILE.toml";
         }
         Provenance {
             algorithm: algorithm.to_owned(),
             settings: identity.settings.text(),
-            seed: self.seed,
+            seed: self.options.seed,
             data,
             encounters,
             data_hash: identity.data,
@@ -289,7 +304,7 @@ impl Order {
             let problem = format!("the trained network is not usable: {error}");
             Failure::input(problem, "lower the learning rates, or change the width")
         })?;
-        write(&self.out, &words)?;
+        write(self.out, &words)?;
         output::write(&self.out.with_extension("txt"), |file| {
             file.write_all(provenance.text().as_bytes())
         })?;
