@@ -48,8 +48,13 @@ impl Drivers {
     /// The drivers themselves; `weights` is the file of Cede's policy, by default the embedded one.
     ///
     /// # Errors
-    /// The file cannot be used.
+    /// The file cannot be used, or Cede is not among them.
     pub(crate) fn contenders(&self, weights: Option<&Path>) -> Result<Vec<Contender>, Failure> {
+        if weights.is_some() && !self.names.contains(&Name::Cede) {
+            let drivers: Vec<_> = self.names.iter().map(|name| name.text()).collect();
+            let drivers = format!("--driver {}", drivers.join(","));
+            return Err(Failure::ignored("--weights", &drivers));
+        }
         let mut contenders = Vec::new();
         for &name in &self.names {
             contenders.push(match name {
@@ -78,7 +83,7 @@ impl FromStr for Drivers {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        if text == "all" {
+        if text.split(',').any(|name| name.trim() == "all") {
             return Ok(Self::all());
         }
         let named = |name: &str| {
@@ -89,10 +94,15 @@ impl FromStr for Drivers {
                 format!("no driver is called `{name}`; there are: all, {all}")
             })
         };
-        Ok(Self {
-            names: text.split(',').map(named).collect::<Result<_, _>>()?,
-            lenient: false,
-        })
+        let mut names = Vec::new();
+        for name in text.split(',') {
+            let name = named(name)?;
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        let lenient = false;
+        Ok(Self { names, lenient })
     }
 }
 

@@ -4,8 +4,10 @@ use cede_data::DataError;
 use cede_data::output::OutputError;
 use std::process::ExitCode;
 
-/// Why a command ended badly. Usage errors (exit code 2) are clap's.
+/// Why a command ended badly. Most usage errors are clap's.
 pub(crate) enum Failure {
+    /// Options that do not go together: exit code 2.
+    Usage(String),
     /// A check ran and did not hold: exit code 1.
     Check(String),
     /// The input or the output cannot be used: exit code 3.
@@ -20,9 +22,18 @@ impl Failure {
         Self::Input(miette::miette!(help = mend.into(), "{problem}"))
     }
 
+    /// An option that would be ignored beside `other`.
+    pub(crate) fn ignored(option: &str, other: &str) -> Self {
+        Self::Usage(format!("{option} has no effect with {other}: leave it out"))
+    }
+
     /// Tells the user on stderr and gives the exit code.
     pub(crate) fn report(self) -> ExitCode {
         match self {
+            Self::Usage(what) => {
+                eprintln!("error: {what}\n\nFor more information, try '--help'.");
+                ExitCode::from(2)
+            }
             Self::Check(what) => {
                 eprintln!("check failed: {what}");
                 ExitCode::from(1)

@@ -1,8 +1,18 @@
-//! Ctrl-C: exit code 4, at once, or after what is under way has been saved.
+//! Ctrl-C and SIGTERM: exit code 4, at once, or after what is under way has been saved, but within a second.
 
 use crate::failure::Failure;
+use cede_data::output;
+use cede_verify::lemma;
 use std::process;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::mpsc;
+use std::thread;
+use std::time::Duration;
+
+/// How long a command has to save what was done.
+const GRACE: Duration = Duration::from_millis(800);
+/// How long a message may take where nobody reads it.
+const PATIENCE: Duration = Duration::from_millis(100);
 
 static DEFERRED: AtomicBool = AtomicBool::new(false);
 static ASKED: AtomicBool = AtomicBool::new(false);
@@ -13,13 +23,30 @@ pub(crate) fn install() {
     let _ = ctrlc::set_handler(|| {
         let again = ASKED.swap(true, Relaxed);
         if again || !DEFERRED.load(Relaxed) {
-            eprintln!("interrupted");
-            process::exit(4);
+            end();
         }
+        thread::spawn(|| {
+            thread::sleep(GRACE);
+            end();
+        });
     });
 }
 
-/// From now on the first Ctrl-C is left to [`check`]; the second still ends the program.
+/// Ends the program; nothing half-written and no solver stays.
+fn end() {
+    let (said, waits) = mpsc::channel();
+    // Another thread may be stuck in a message, with the lock on stderr, because nobody reads it.
+    thread::spawn(move || {
+        eprintln!("interrupted");
+        said.send(())
+    });
+    let _ = waits.recv_timeout(PATIENCE);
+    lemma::abandon();
+    output::abandon();
+    process::exit(4);
+}
+
+/// From now on the first Ctrl-C is left to [`check`], if the command comes there soon.
 pub(crate) fn defer() {
     DEFERRED.store(true, Relaxed);
 }

@@ -61,20 +61,29 @@ pub(crate) enum ShieldName {
 }
 
 impl ShieldName {
-    /// The shields of a [`Plan`], which assume `contract`.
-    pub(crate) fn shields(self, contract: Contract) -> Vec<Option<Contract>> {
+    /// The shields of a [`Plan`], which assume `contract`, by default the worst case.
+    ///
+    /// # Errors
+    /// A contract is named and no shield is on.
+    pub(crate) fn shields(
+        self,
+        contract: Option<ContractName>,
+    ) -> Result<Vec<Option<Contract>>, Failure> {
+        let assumed = Some(contract.unwrap_or_default().into());
         match self {
-            Self::Off => vec![None],
-            Self::On => vec![Some(contract)],
-            Self::Both => vec![None, Some(contract)],
+            Self::Off if contract.is_some() => Err(Failure::ignored("--contract", "--shield off")),
+            Self::Off => Ok(vec![None]),
+            Self::On => Ok(vec![assumed]),
+            Self::Both => Ok(vec![None, assumed]),
         }
     }
 }
 
 /// What the shield assumes of the others.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ContractName {
     /// Nobody's courtesy where routes cross
+    #[default]
     WorstCase,
     /// Who arrived first goes first
     AllWayStop,
@@ -102,7 +111,7 @@ impl Plan {
     /// The rows, split by split and driver by driver; `each` sees every row with its episodes.
     ///
     /// # Errors
-    /// A named driver cannot be fitted, or the user has asked to stop.
+    /// A selection is empty, a named driver cannot be fitted, or the user has asked to stop.
     pub(crate) fn judge(
         &self,
         dataset: &Dataset,
@@ -113,6 +122,12 @@ impl Plan {
         let mut rows = Vec::new();
         for &selection in &self.selections {
             let rounds = selection.rounds(dataset);
+            if rounds.iter().all(|round| round.judged.is_empty()) {
+                return Err(Failure::input(
+                    format!("there is nothing to judge on: no encounters in `{selection}`"),
+                    "name another --split, or add its files to the folder",
+                ));
+            }
             for (&shield, contender) in product(&self.shields, &self.contenders) {
                 interrupt::check()?;
                 bar.set_message(format!("{selection}: {}", contender.name()));

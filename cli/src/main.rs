@@ -8,11 +8,13 @@ mod drivers;
 mod failure;
 mod interrupt;
 mod judge;
+mod plural;
 mod report;
 mod scene;
 mod settings;
 mod source;
 mod table;
+mod threads;
 mod training;
 
 use clap::Parser;

@@ -11,6 +11,7 @@ mod why;
 pub(crate) use why::{Class, words};
 
 use crate::failure::Failure;
+use crate::plural::Count;
 use cede_controller::Contract;
 use cede_data::{Dataset, Encounter, EncounterId, Role, Split, output};
 use cede_sim::evaluate::{Drive, Row};
@@ -138,10 +139,10 @@ impl Report {
 fn subtitle(dataset: &Dataset) -> String {
     let count = |split| dataset.split(split).count();
     format!(
-        "Site {}: {} encounters in {} recordings ({} train, {} validation, {} test)",
+        "Site {}: {} in {} ({} train, {} validation, {} test)",
         dataset.site.name,
-        dataset.encounters.len(),
-        dataset.recordings.len(),
+        Count(dataset.encounters.len(), "encounter"),
+        Count(dataset.recordings.len(), "recording"),
         count(Split::Train),
         count(Split::Validation),
         count(Split::Test),

@@ -1,6 +1,7 @@
 //! A site drawn from above: its map, what the vehicles drove, and where they met.
 
 use crate::failure::Failure;
+use crate::plural::Count;
 use cede_controller::ConflictKind;
 use cede_data::lanelet::{LineKind, Map};
 use cede_data::{Dataset, Manoeuvre, output};
@@ -197,10 +198,10 @@ fn legend(svg: &mut String, view: &View, dataset: &Dataset) {
         "",
     );
     let title = format!(
-        "{}: {} encounters, {} recordings; the scale is 10 m",
+        "{}: {}, {}; the scale is 10 m",
         dataset.site.name,
-        dataset.encounters.len(),
-        dataset.recordings.len()
+        Count(dataset.encounters.len(), "encounter"),
+        Count(dataset.recordings.len(), "recording")
     );
     let _ = writeln!(
         svg,

@@ -24,10 +24,16 @@ pub(crate) fn with(settings: &Settings, text: &str, origin: &str) -> Result<Sett
     settings.with(&table).map_err(wrong)
 }
 
-/// The settings of a row of `cede reproduce`, with those replaced that `sets` name, as in
-/// `apg.width=64`; those of other rows are passed over.
-pub(crate) fn of_row(row: Algorithm, sets: &[String]) -> Result<Settings, Failure> {
-    let settings = sets.iter().try_fold(row.reproduction(), |settings, set| {
+/// The rows of `cede reproduce` with their settings, those replaced that `sets` name, as in `apg.width=64`.
+///
+/// # Errors
+/// A setting is not sound, or its row is not among `rows`.
+pub(crate) fn of_rows(
+    rows: &[Algorithm],
+    sets: &[String],
+) -> Result<Vec<(Algorithm, Settings)>, Failure> {
+    let mut settled: Vec<_> = rows.iter().map(|row| (*row, row.reproduction())).collect();
+    for set in sets {
         let (name, rest) = set.split_once('.').unwrap_or((set, ""));
         let known = Algorithm::ALL.iter().any(|known| known.name() == name);
         if rest.is_empty() || !known {
@@ -37,13 +43,15 @@ pub(crate) fn of_row(row: Algorithm, sets: &[String]) -> Result<Settings, Failur
                 mend,
             ));
         }
-        if name == row.name() {
-            with(&settings, &quoted(rest), "--set")
-        } else {
-            Ok(settings)
-        }
-    })?;
-    checked(settings)
+        let Some((_, settings)) = settled.iter_mut().find(|(row, _)| row.name() == name) else {
+            let rows: Vec<_> = rows.iter().map(|row| row.name()).collect();
+            let (set, rows) = (format!("--set {set}"), rows.join(","));
+            return Err(Failure::ignored(&set, &format!("--rows {rows}")));
+        };
+        *settings = with(settings, &quoted(rest), "--set")?;
+    }
+    let check = |(row, settings)| Ok((row, checked(settings)?));
+    settled.into_iter().map(check).collect()
 }
 
 /// The settings, if a training can begin with them.

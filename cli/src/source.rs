@@ -2,7 +2,13 @@
 
 use crate::failure::Failure;
 use cede_data::Dataset;
+use clap::builder::RangedU64ValueParser;
 use std::path::Path;
+
+/// Site of the recordings, where none is named.
+const SITE: &str = "EP0";
+/// Number of synthetic encounters, where none is named.
+const ENCOUNTERS: usize = 1000;
 
 /// The options that name a data set.
 #[derive(clap::Args)]
@@ -10,20 +16,87 @@ pub(crate) struct Source {
     /// Folder of recordings, or `synthetic`: the embedded generator
     #[arg(long, value_name = "DIR|synthetic")]
     pub(crate) data: String,
-    /// Site of the recordings: `EP0`, `MA`, or the path of a site description
-    #[arg(long, default_value = "EP0")]
-    pub(crate) site: String,
-    /// Number of synthetic encounters, at least
-    #[arg(long, default_value_t = 1000, value_name = "N")]
-    pub(crate) encounters: usize,
+    /// Site of the recordings: `EP0`, `MA`, or the path of a site description [default: EP0]
+    #[arg(long)]
+    site: Option<String>,
+    /// Number of synthetic encounters, at least [default: 1000]
+    #[arg(long, value_name = "N", value_parser = at_least_one())]
+    encounters: Option<usize>,
+}
+
+/// Reads a number from 1 on.
+pub(crate) fn at_least_one() -> RangedU64ValueParser<usize> {
+    RangedU64ValueParser::new().range(1..)
 }
 
 impl Source {
-    /// Reads the recordings, or generates encounters from `seed`.
+    /// Reads the recordings, or generates encounters from `seed`; there may be none.
+    ///
+    /// # Errors
+    /// An option belongs to the other kind of data, or the recordings cannot be used.
     pub(crate) fn load(&self, seed: u64) -> Result<Dataset, Failure> {
-        if self.data == "synthetic" {
-            return Ok(Dataset::synthetic(self.encounters, seed));
+        if self.is_synthetic() {
+            if self.site.is_some() {
+                return Err(Failure::ignored("--site", "--data synthetic"));
+            }
+            return Ok(Dataset::synthetic(self.encounters(), seed));
         }
-        Ok(Dataset::load(Path::new(&self.data), &self.site)?)
+        if self.encounters.is_some() {
+            return Err(self.for_synthetic("--encounters"));
+        }
+        Ok(Dataset::load(Path::new(&self.data), self.site())?)
     }
+
+    /// The same, where `seed` is that of the synthetic encounters alone and `option` gives it, by default `default`.
+    ///
+    /// # Errors
+    /// As [`Source::load`].
+    pub(crate) fn load_seeded(
+        &self,
+        option: &str,
+        seed: Option<u64>,
+        default: u64,
+    ) -> Result<Dataset, Failure> {
+        if seed.is_some() && !self.is_synthetic() {
+            return Err(self.for_synthetic(option));
+        }
+        self.load(seed.unwrap_or(default))
+    }
+
+    /// `option` is for synthetic data, and these are recorded.
+    fn for_synthetic(&self, option: &str) -> Failure {
+        Failure::ignored(option, &format!("the recordings in {}", self.data))
+    }
+
+    /// Whether the encounters are generated.
+    pub(crate) fn is_synthetic(&self) -> bool {
+        self.data == "synthetic"
+    }
+
+    /// Site of the recordings.
+    pub(crate) fn site(&self) -> &str {
+        self.site.as_deref().unwrap_or(SITE)
+    }
+
+    /// Number of synthetic encounters, at least.
+    pub(crate) fn encounters(&self) -> usize {
+        self.encounters.unwrap_or(ENCOUNTERS)
+    }
+}
+
+/// The data set, if there are encounters in it.
+///
+/// # Errors
+/// There are none.
+pub(crate) fn not_empty(dataset: &Dataset) -> Result<(), Failure> {
+    if dataset.encounters.is_empty() {
+        return Err(Failure::input(
+            format!(
+                "no encounters in the recordings of site {}",
+                dataset.site.name
+            ),
+            "see what is there with `cede data inspect`, or name another folder or site",
+        ));
+    }
+    Ok(())
 }

@@ -1,4 +1,4 @@
-//! What is printed: `print!` and `println!` as std's, but a reader that has seen enough (`| head`) is no
+//! What is printed: `print!`, `println!` and `eprintln!` as std's, but a reader that has seen enough (`| head`) is no
 //! failure. The command goes on, without printing, so that its files and its exit code are those it
 //! would have had.
 
@@ -15,6 +15,17 @@ macro_rules! print {
 macro_rules! println {
     () => { print!("\n") };
     ($($what:tt)*) => { print!("{}\n", format_args!($($what)*)) };
+}
+
+/// As std's, but where stderr cannot be written to, nothing is said.
+macro_rules! eprintln {
+    ($($what:tt)*) => { $crate::stdout::tell(format_args!($($what)*)) };
+}
+
+/// Prints a line on stderr.
+pub(crate) fn tell(what: Arguments<'_>) {
+    // There is no other place to complain at.
+    let _ = writeln!(io::stderr(), "{what}");
 }
 
 /// Prints; where that is impossible for another reason than a closed pipe (a full disk), the program ends

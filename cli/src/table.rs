@@ -1,5 +1,6 @@
 //! The table on stdout, with the paper's rows beside ours.
 
+use crate::plural::Count;
 use cede_sim::evaluate::{Interval, Row};
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 
@@ -69,7 +70,8 @@ fn heading(row: &Row) -> String {
         encounters,
         ..
     } = row;
-    format!("{split}: {encounters} encounters, {mode} mode, until {until}, shield {shield}")
+    let encounters = Count(*encounters, "encounter");
+    format!("{split}: {encounters}, {mode} mode, until {until}, shield {shield}")
 }
 
 fn cells(row: &Row) -> [String; 12] {

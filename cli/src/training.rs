@@ -97,6 +97,7 @@ impl<'e> Training<'e> {
         &mut self,
         mut each: impl FnMut(&Report, &Run<'e>, Option<&Point>) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
+        interrupt::defer();
         let mut saved = Instant::now();
         while let Some(report) = self.run.advance() {
             let panel = self.panel.as_ref();

@@ -2,10 +2,13 @@
 //!
 //! A file is written under a temporary name in its own folder and renamed when
 //! it is complete, so an interrupted run, a full disk or a failing writer
-//! leaves the old file, if there was one, and nothing half-written.
+//! leaves the old file, if there was one, and nothing half-written. A program
+//! that ends while another thread writes calls [`abandon`] first.
 
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use tempfile::NamedTempFile;
 
 /// An output file could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -64,16 +67,54 @@ fn replace(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> 
         _ => Path::new("."),
     };
     std::fs::create_dir_all(folder)?;
-    let file = temporary_in(folder)?;
+    let (file, _listed) = Listed::temporary_in(folder)?;
     let mut writer = BufWriter::new(file);
     fill(&mut writer)?;
     let file = writer.into_inner()?;
     file.as_file().sync_data()?;
+    let _held = unfinished();
     file.persist(path)?;
     Ok(())
 }
 
-fn temporary_in(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
+/// Temporary names of the files that are being written.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Deletes what is half-written, for a program that is about to end. From now on, threads that write wait for
+/// that end.
+pub fn abandon() {
+    let files = unfinished();
+    for file in files.iter() {
+        // What cannot be deleted stays: there is nobody left to tell.
+        let _ = std::fs::remove_file(file);
+    }
+    std::mem::forget(files);
+}
+
+/// A temporary file's place among those that [`abandon`] deletes, for as long as this lives.
+struct Listed(PathBuf);
+
+impl Listed {
+    fn temporary_in(folder: &Path) -> io::Result<(NamedTempFile, Self)> {
+        let mut files = unfinished();
+        let file = temporary_in(folder)?;
+        let path = file.path().to_owned();
+        files.push(path.clone());
+        Ok((file, Self(path)))
+    }
+}
+
+impl Drop for Listed {
+    fn drop(&mut self) {
+        unfinished().retain(|path| *path != self.0);
+    }
+}
+
+fn temporary_in(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".cede-").suffix(".part");
     #[cfg(unix)]

@@ -24,7 +24,7 @@ pub use formula::Script;
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 use term::Term;
-pub use z3::{Answer, Quantity, Solver, SolverError};
+pub use z3::{Answer, Quantity, Solver, SolverError, abandon};
 
 /// A step of the theorem.
 #[derive(Clone, Debug)]

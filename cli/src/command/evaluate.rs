@@ -6,8 +6,9 @@ use crate::drivers::Drivers;
 use crate::failure::Failure;
 use crate::judge::{ContractName, ModeName, Plan, ShieldName, UntilName};
 use crate::report::{Report, command};
-use crate::source::Source;
-use crate::{interrupt, table};
+use crate::source::{Source, not_empty};
+use crate::table;
+use crate::threads::Threads;
 use cede_data::{Dataset, Split};
 use cede_sim::driver::Baseline;
 use cede_sim::evaluate::{Row, Selection};
@@ -30,27 +31,26 @@ pub(crate) struct Args {
     /// Who is under test
     #[arg(long, value_enum, default_value_t = ModeName::Joint)]
     mode: ModeName,
-    /// In ego mode, the driver of the other vehicle
-    #[arg(long, default_value_t = Baseline::Replay, value_name = "NAME")]
-    partner: Baseline,
+    /// In ego mode, the driver of the other vehicle [default: replay]
+    #[arg(long, value_name = "NAME")]
+    partner: Option<Baseline>,
     /// When an episode is over
     #[arg(long, value_enum, default_value_t = UntilName::Conflict)]
     until: UntilName,
     /// Whether the vehicle under test carries the shield
     #[arg(long, value_enum, default_value_t = ShieldName::Off)]
     shield: ShieldName,
-    /// What the shield assumes of the others
-    #[arg(long, value_enum, default_value_t = ContractName::WorstCase)]
-    contract: ContractName,
+    /// What the shield assumes of the others [default: worst-case]
+    #[arg(long, value_enum)]
+    contract: Option<ContractName>,
     /// The policy of driver `cede`
     #[arg(long, value_name = "FILE.cede")]
     weights: Option<PathBuf>,
     /// Seed of every random choice
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Number of threads; the result does not depend on it [default: all cores]
-    #[arg(long)]
-    threads: Option<usize>,
+    #[command(flatten)]
+    threads: Threads,
     /// Print one JSON object instead of the table; shares are fractions
     #[arg(long)]
     json: bool,
@@ -73,15 +73,13 @@ struct Output<'a> {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    interrupt::defer();
-    if let Some(threads) = args.threads {
-        // Fails only if the pool is there already: nothing has used it yet.
-        let _ = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build_global();
-    }
+    args.threads.start()?;
+    let mut plan = args.plan()?;
     let dataset = args.source.load(args.seed)?;
-    let plan = args.plan(&dataset)?;
+    not_empty(&dataset)?;
+    if plan.selections.is_empty() {
+        plan.selections = present(&dataset);
+    }
     let mut records = Vec::new();
     let mut report = args
         .report
@@ -100,7 +98,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     if let (Some(mut report), Some(path)) = (report, &args.report) {
         if args.shield != ShieldName::Off {
-            report.sweep(&dataset, args.contract.into());
+            report.sweep(&dataset, args.contract.unwrap_or_default().into());
         }
         report.write(path)?;
     }
@@ -108,19 +106,25 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 }
 
 impl Args {
-    fn plan(&self, dataset: &Dataset) -> Result<Plan, Failure> {
+    /// What is judged; without selections those that are present are meant.
+    fn plan(&self) -> Result<Plan, Failure> {
+        if self.partner.is_some() && self.mode == ModeName::Joint {
+            return Err(Failure::ignored("--partner", "--mode joint"));
+        }
+        let mut selections = Vec::new();
+        for &selection in &self.split {
+            if !selections.contains(&selection) {
+                selections.push(selection);
+            }
+        }
         Ok(Plan {
             contenders: self.driver.contenders(self.weights.as_deref())?,
             lenient: self.driver.lenient,
-            selections: if self.split.is_empty() {
-                present(dataset)
-            } else {
-                self.split.clone()
-            },
+            selections,
             mode: self.mode,
-            partner: self.partner,
+            partner: self.partner.unwrap_or(Baseline::Replay),
             until: self.until,
-            shields: self.shield.shields(self.contract.into()),
+            shields: self.shield.shields(self.contract)?,
             seed: self.seed,
         })
     }

@@ -7,9 +7,15 @@ use cede_formats::{onnx, safetensors};
 use clap::ValueEnum;
 use std::path::PathBuf;
 
-/// ONNX: raw features in, accelerations (m/s²) out, with normalisation and squashing inside; metadata name the
-/// features. Safetensors: the bare numbers of network and normalisation.
+/// What `cede help export` says beside the options.
+const HELP: &str = "\
+ONNX: raw features in, accelerations (m/s²) out; normalisation and squashing are in the graph. Metadata:
+cede.features, cede.feature_names, cede.perspective, cede.provenance_sha256.
+Safetensors: the bare numbers of the network and of the normalisation, with the same metadata as JSON.";
+
+/// Options of `cede export`.
 #[derive(clap::Args)]
+#[command(after_help = HELP)]
 pub(crate) struct Args {
     /// The policy (`.cede`); by default the one that comes with the program
     #[arg(long, value_name = "FILE")]

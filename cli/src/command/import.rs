@@ -7,37 +7,62 @@ use cede_data::output;
 use cede_formats::cede;
 use cede_formats::description::{features_named, perspective_name, perspective_named};
 use cede_formats::onnx::{self, ImportError, Told};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::path::PathBuf;
 
-/// The graph: Sub, Add, Mul, Div and one Clip to ± a number (all optional), one to three hidden layers of at most
-/// 128 neurons with ReLU, an output layer, Tanh and Mul by 3 (optional). Accelerations are 3·tanh of the
-/// network's first two outputs: for a joint policy the left-turner's and the other's, else the ego's and, where
-/// there is a second, what it expects of the other.
+/// What `cede help import` says beside the options.
+fn help() -> String {
+    let sets = FeatureSet::ALL.map(|set| format!("{} {}", set.name(), set.count()));
+    format!("\
+Graphs that are understood: a chain, in this order, of
+  1. Sub, Add, Mul and Div with constants, and one Clip to ± a number: the normalisation; each may be missing
+  2. one to three hidden layers of at most 128 neurons: Gemm, or MatMul and Add, then Relu
+  3. an output layer: Gemm, or MatMul and Add
+  4. Tanh, and Mul by 3: each may be missing, as accelerations are always 3·tanh of the outputs, in m/s²
+Identity, Dropout and Flatten (axis 1) may stand anywhere. Constants are float, double or int64, inside the file.
+
+Inputs: the features of one set, in its order. Their numbers: {sets}; `cede export`
+writes their names to the metadata.
+Outputs, 2 or 4, or for an ego policy 1: the first vehicle's command, the second's, and two that are ignored.
+A joint policy's vehicles are the left-turner and the other. An ego policy's second output is what it expects
+of the other; where it is missing, that the other keeps its speed.
+
+Metadata that are read: cede.features (raw, route, traffic, scene) and cede.perspective (ego, joint). --features and
+--perspective go before them. Without cede.features, --features is needed; without cede.perspective, it is ego.
+
+Weights must be within ± 1000. A graph without Clip gets one; the limits of each feature are printed.",
+        sets = sets.join(", ")
+    )
+}
+
+/// Options of `cede import`.
 #[derive(clap::Args)]
+#[command(after_help = help())]
 pub(crate) struct Args {
     /// The policy, ONNX
     #[arg(long, value_name = "FILE")]
     onnx: PathBuf,
-    /// Features that the network is told: raw, route, traffic or scene; by default what the file's metadata say
-    #[arg(long, value_name = "SET", value_parser = feature_set)]
+    /// Features that the network is told; by default what the file's metadata say
+    #[arg(long, value_name = "SET", value_parser = feature_sets())]
     features: Option<FeatureSet>,
-    /// Whose commands it gives: ego or joint; by default what the file's metadata say, else ego
-    #[arg(long, value_name = "WHOSE", value_parser = perspective)]
+    /// Whose commands it gives; by default what the file's metadata say, else ego
+    #[arg(long, value_name = "WHOSE", value_parser = perspectives())]
     perspective: Option<Perspective>,
     /// The weights file to write
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 }
 
-fn feature_set(name: &str) -> Result<FeatureSet, String> {
-    features_named(name).ok_or_else(|| {
-        let names = FeatureSet::ALL.map(FeatureSet::name).join(", ");
-        format!("no feature set is called `{name}`; there are: {names}")
-    })
+/// The sets by their names.
+fn feature_sets() -> impl TypedValueParser<Value = FeatureSet> {
+    let names = PossibleValuesParser::new(FeatureSet::ALL.map(FeatureSet::name));
+    names.try_map(|name| features_named(&name).ok_or("unknown"))
 }
 
-fn perspective(name: &str) -> Result<Perspective, String> {
-    perspective_named(name).ok_or_else(|| "it is either ego or joint".to_owned())
+/// The perspectives by their names.
+fn perspectives() -> impl TypedValueParser<Value = Perspective> {
+    let names = [Perspective::Ego, Perspective::Joint].map(perspective_name);
+    PossibleValuesParser::new(names).try_map(|name| perspective_named(&name).ok_or("unknown"))
 }
 
 /// Runs the command.

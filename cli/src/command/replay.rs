@@ -30,9 +30,9 @@ pub(crate) struct Args {
     /// Whether both vehicles carry the shield
     #[arg(long, value_enum, default_value_t = ShieldName::Off)]
     shield: ShieldName,
-    /// What the shield assumes of the others
-    #[arg(long, value_enum, default_value_t = ContractName::WorstCase)]
-    contract: ContractName,
+    /// What the shield assumes of the others [default: worst-case]
+    #[arg(long, value_enum)]
+    contract: Option<ContractName>,
     /// The policy of driver `cede`
     #[arg(long, value_name = "FILE.cede")]
     weights: Option<PathBuf>,
@@ -64,12 +64,13 @@ impl FromStr for Pair {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let shields = args.shield.shields(args.contract)?;
+    let contenders = args.driver.contenders(args.weights.as_deref())?;
     let dataset = Dataset::load(&args.file, &args.site)?;
     let encounter = args.choose(&dataset)?;
     numbers::record(encounter);
     let mut report = Report::showing(vec![encounter], &dataset, &args.command(encounter));
-    let shields = args.shield.shields(args.contract.into());
-    for contender in args.driver.contenders(args.weights.as_deref())? {
+    for contender in contenders {
         for &shield in &shields {
             drive(&contender, shield, encounter, &dataset, &mut report)?;
         }

@@ -3,19 +3,21 @@
 mod job;
 mod summary;
 
+use super::train::Choice;
 use crate::drivers::Contender;
 use crate::failure::Failure;
 use crate::judge::{ModeName, Plan, UntilName};
 use crate::report::{self, Learned, Report};
-use crate::source::Source;
+use crate::source::{Source, not_empty};
+use crate::threads::Threads;
 use crate::{interrupt, settings};
 use cede_controller::{Contract, Policy};
 use cede_data::{Dataset, Encounter, Split, output};
 use cede_sim::driver::{Baseline, Cede, DriverFactory, PolicyAlone};
 use cede_sim::episode::Until;
 use cede_sim::evaluate::{Drive, Label, Mode, Protocol, Row, Selection, evaluate};
-use cede_train::run::Algorithm;
 use cede_train::run::curve::Curve;
+use cede_train::run::{Algorithm, Settings};
 use indicatif::{ProgressBar, ProgressStyle};
 use job::Job;
 use rayon::prelude::*;
@@ -29,8 +31,14 @@ pub(crate) struct Args {
     #[command(flatten)]
     source: Source,
     /// Rows to train: bc, sac, sacer-v, sacer-svo, apg, separated by commas
-    #[arg(long, value_delimiter = ',', default_value = "bc,sacer-v,sacer-svo", value_parser = named)]
-    rows: Vec<Algorithm>,
+    #[arg(
+        long,
+        value_delimiter = ',',
+        value_enum,
+        default_value = "bc,sacer-v,sacer-svo",
+        hide_possible_values = true
+    )]
+    rows: Vec<Choice>,
     /// Seeds to train each row from
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..))]
     seeds: u64,
@@ -53,17 +61,8 @@ pub(crate) struct Args {
     /// Print one JSON object instead of the table; shares are fractions
     #[arg(long)]
     json: bool,
-    /// Number of threads; the result does not depend on it [default: all cores]
-    #[arg(long)]
-    threads: Option<usize>,
-}
-
-fn named(name: &str) -> Result<Algorithm, String> {
-    let known = Algorithm::ALL.into_iter().find(|a| a.name() == name);
-    known.ok_or_else(|| {
-        let all = Algorithm::ALL.map(Algorithm::name).join(", ");
-        format!("no row is called `{name}`; there are: {all}")
-    })
+    #[command(flatten)]
+    threads: Threads,
 }
 
 /// Without a shield, and with one of each contract; by their names in the table.
@@ -98,13 +97,11 @@ struct Output<'a> {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    interrupt::defer();
-    if let Some(threads) = args.threads {
-        // Fails only if the pool is there already: nothing has used it yet.
-        let _ = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build_global();
+    args.threads.start()?;
+    if args.transfer.is_some() && args.source.is_synthetic() {
+        return Err(Failure::ignored("--transfer", "--data synthetic"));
     }
+    let rows = args.settled_rows()?;
     let dataset = args.source.load(1)?;
     if dataset.split(Split::Train).next().is_none() {
         return Err(Failure::input(
@@ -113,9 +110,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         ));
     }
     let elsewhere = args.elsewhere()?;
-    let looks_beside = args.rows.iter().any(|row| row.looks_beside());
+    let looks_beside = rows.iter().any(|(row, _)| row.looks_beside());
     let every = looks_beside.then(|| dataset.every_pair());
-    let jobs = args.jobs(&dataset, every.as_ref(), elsewhere.as_ref())?;
+    let jobs = args.jobs(&rows, &dataset, every.as_ref(), elsewhere.as_ref());
     let trained = args
         .train(&jobs, &dataset.site.name)
         .inspect_err(|failure| {
@@ -180,23 +177,36 @@ impl Args {
     }
 
     fn elsewhere(&self) -> Result<Option<Dataset>, Failure> {
-        let load = |site| Dataset::load(Path::new(&self.source.data), site);
-        Ok(self.transfer.as_deref().map(load).transpose()?)
+        let Some(site) = &self.transfer else {
+            return Ok(None);
+        };
+        let dataset = Dataset::load(Path::new(&self.source.data), site)?;
+        not_empty(&dataset)?;
+        Ok(Some(dataset))
+    }
+
+    /// The rows, each once, with their settings.
+    ///
+    /// # Errors
+    /// A setting is not sound, or belongs to no row that is trained.
+    fn settled_rows(&self) -> Result<Vec<(Algorithm, Settings)>, Failure> {
+        let mut rows: Vec<Algorithm> = Vec::new();
+        for Choice(row) in &self.rows {
+            if !rows.contains(row) {
+                rows.push(*row);
+            }
+        }
+        settings::of_rows(&rows, &self.set)
     }
 
     /// `every` has the pairs that may be looked at beside those that are judged.
     fn jobs<'d>(
         &self,
+        rows: &[(Algorithm, Settings)],
         dataset: &'d Dataset,
         every: Option<&'d Dataset>,
         elsewhere: Option<&'d Dataset>,
-    ) -> Result<Vec<Job<'d>>, Failure> {
-        let with_settings = |row: &Algorithm| Ok((*row, settings::of_row(*row, &self.set)?));
-        let rows: Vec<_> = self
-            .rows
-            .iter()
-            .map(with_settings)
-            .collect::<Result<_, Failure>>()?;
+    ) -> Vec<Job<'d>> {
         let beside = |algorithm: Algorithm, training: &[&Encounter]| {
             let learned = |file| training.iter().any(|e| e.id.file == file);
             let every = every.filter(|_| algorithm.looks_beside()).into_iter();
@@ -245,7 +255,7 @@ impl Args {
             });
             std::iter::once(whole).chain(folds)
         });
-        Ok(jobs.collect())
+        jobs.collect()
     }
 
     /// Trains all `jobs`, as many at a time as there are threads.

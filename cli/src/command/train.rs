@@ -1,9 +1,9 @@
 //! `cede train`: from encounters to a weights file.
 
 use crate::failure::Failure;
-use crate::interrupt;
 use crate::settings::{checked, quoted, with};
 use crate::source::Source;
+use crate::threads::Threads;
 use crate::training::{Identity, Training};
 use cede_data::{Dataset, Encounter, Split, output};
 use cede_formats::property::{Properties, StateProperty};
@@ -20,15 +20,47 @@ use std::time::{Duration, Instant};
 
 /// Options of `cede train`.
 #[derive(clap::Args)]
+#[command(mut_arg("data", |data| data.required(false).required_unless_present("show_settings")))]
 pub(crate) struct Args {
+    #[command(flatten)]
+    method: Method,
+    #[command(flatten)]
+    source: Option<Source>,
+    /// The weights file to write; its provenance goes beside it, to FILE.txt, and checkpoints to
+    /// FILE.checkpoint
+    #[arg(
+        long,
+        value_name = "FILE.cede",
+        required_unless_present = "show_settings"
+    )]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    options: Options,
+    /// Print the algorithm's settings as TOML and stop; no other option is needed
+    #[arg(long)]
+    show_settings: bool,
+}
+
+/// How to learn.
+#[derive(clap::Args)]
+struct Method {
     /// How to learn
     #[arg(value_enum)]
     algorithm: Choice,
-    #[command(flatten)]
-    source: Source,
-    /// Seed of the synthetic encounters; training has its own
-    #[arg(long, default_value_t = 1, value_name = "SEED")]
-    data_seed: u64,
+    /// Settings that differ from the defaults, as TOML
+    #[arg(long, value_name = "FILE.toml")]
+    settings: Option<PathBuf>,
+    /// One setting that differs, as in `--set width=128` or `--set rates.policy=3e-4`; repeatable
+    #[arg(long, value_name = "NAME=VALUE")]
+    set: Vec<String>,
+}
+
+/// What else can be said of a training.
+#[derive(clap::Args)]
+struct Options {
+    /// Seed of the synthetic encounters; training has its own [default: 1]
+    #[arg(long, value_name = "SEED")]
+    data_seed: Option<u64>,
     /// In a refinement, hold the network to what it was wherever two vehicles of the training files
     /// cross or merge
     #[arg(long)]
@@ -39,33 +71,27 @@ pub(crate) struct Args {
     /// Seed of every random choice of the training
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Settings that differ from the defaults, as TOML
-    #[arg(long, value_name = "FILE.toml")]
-    settings: Option<PathBuf>,
-    /// One setting that differs, as in `--set width=128` or `--set rates.policy=3e-4`; repeatable
-    #[arg(long, value_name = "NAME=VALUE")]
-    set: Vec<String>,
-    /// The weights file to write; its provenance goes beside it, to FILE.txt, and checkpoints to
-    /// FILE.checkpoint
-    #[arg(long, value_name = "FILE.cede")]
-    out: PathBuf,
     /// Folder for the training curves: CSV, and TensorBoard's event file
     #[arg(long, value_name = "DIR")]
     log: Option<PathBuf>,
     /// Go on from the last checkpoint of the same run
     #[arg(long)]
     resume: bool,
-    /// Print the algorithm's settings as TOML and stop
-    #[arg(long)]
-    show_settings: bool,
-    /// Number of threads; the result does not depend on it [default: all cores]
-    #[arg(long)]
-    threads: Option<usize>,
+    #[command(flatten)]
+    threads: Threads,
+}
+
+/// A training as it was ordered.
+struct Order<'a> {
+    method: &'a Method,
+    source: &'a Source,
+    out: &'a Path,
+    options: &'a Options,
 }
 
 /// An algorithm by its name.
 #[derive(Clone, Copy)]
-struct Choice(Algorithm);
+pub(super) struct Choice(pub(super) Algorithm);
 
 impl clap::ValueEnum for Choice {
     fn value_variants<'a>() -> &'a [Self] {
@@ -86,53 +112,30 @@ const JUDGE_EVERY: Duration = Duration::from_secs(5);
 /// Encounters of the judgement for the progress bar.
 const JUDGED: usize = 60;
 
+/// Seed of the synthetic encounters, where none is given.
+const DATA_SEED: u64 = 1;
+
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    interrupt::defer();
-    if let Some(threads) = args.threads {
-        // Fails only if the pool is there already: nothing has used it yet.
-        let _ = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build_global();
+    let settings = args.method.settings()?;
+    match (&args.source, &args.out) {
+        (Some(source), Some(out)) if !args.show_settings => {
+            let order = Order {
+                method: &args.method,
+                source,
+                out,
+                options: &args.options,
+            };
+            order.run(settings)
+        }
+        _ => {
+            print!("{}", settings.text());
+            Ok(())
+        }
     }
-    let settings = args.settings()?;
-    if args.show_settings {
-        print!("{}", settings.text());
-        return Ok(());
-    }
-    let dataset = args.source.load(args.data_seed)?;
-    let own: Vec<&Encounter> = dataset.split(Split::Train).collect();
-    if own.is_empty() {
-        return Err(Failure::input(
-            "there is nothing to learn from: no encounters in the training files",
-            "add training files to the folder, or name another site",
-        ));
-    }
-    let every = args.every_pair.then(|| dataset.every_pair());
-    let beside = every.iter().flat_map(|every| every.split(Split::Train));
-    let beside: Vec<&Encounter> = beside.collect();
-    let encounters = || own.iter().chain(&beside).copied();
-    let (claims, text) = args.claims()?;
-    let hash = data_hash(encounters(), &text);
-    let lessons = Lessons {
-        claims,
-        ..Lessons::new(&own, &beside)
-    };
-    let identity = Identity {
-        data: hash,
-        algorithm: args.algorithm.0,
-        seed: args.seed,
-        settings,
-    };
-    let provenance = args.provenance(&identity, encounters().count());
-    let mut training = args.begin(identity, &lessons, args.panel(&dataset, &lessons))?;
-    args.advance(&mut training, &lessons)?;
-    args.write(&training.run, &provenance)?;
-    training.clean();
-    Ok(())
 }
 
-impl Args {
+impl Method {
     fn settings(&self) -> Result<Settings, Failure> {
         let mut settings = self.algorithm.0.settings();
         if let Some(path) = &self.settings {
@@ -143,17 +146,56 @@ impl Args {
         }
         checked(settings)
     }
+}
+
+impl Order<'_> {
+    fn run(&self, settings: Settings) -> Result<(), Failure> {
+        let algorithm = self.method.algorithm.0;
+        if self.options.every_pair && !algorithm.looks_beside() {
+            return Err(Failure::ignored("--every-pair", algorithm.name()));
+        }
+        let (claims, text) = self.claims(algorithm)?;
+        self.options.threads.start()?;
+        let dataset = self
+            .source
+            .load_seeded("--data-seed", self.options.data_seed, DATA_SEED)?;
+        let own: Vec<&Encounter> = dataset.split(Split::Train).collect();
+        if own.is_empty() {
+            return Err(Failure::input(
+                "there is nothing to learn from: no encounters in the training files",
+                "add training files to the folder, or name another site",
+            ));
+        }
+        let every = self.options.every_pair.then(|| dataset.every_pair());
+        let beside = every.iter().flat_map(|every| every.split(Split::Train));
+        let beside: Vec<&Encounter> = beside.collect();
+        let encounters = || own.iter().chain(&beside).copied();
+        let hash = data_hash(encounters(), &text);
+        let lessons = Lessons {
+            claims,
+            ..Lessons::new(&own, &beside)
+        };
+        let identity = Identity {
+            data: hash,
+            algorithm,
+            seed: self.options.seed,
+            settings,
+        };
+        let provenance = self.provenance(&identity, encounters().count());
+        let mut training = self.begin(identity, &lessons, self.panel(&dataset, &lessons))?;
+        self.advance(&mut training, &lessons)?;
+        self.write(&training.run, &provenance)?;
+        training.clean();
+        Ok(())
+    }
 
     /// What is to be claimed of the policy, and the text that says so.
-    fn claims(&self) -> Result<(Vec<StateProperty>, String), Failure> {
-        let Some(path) = &self.claims else {
+    fn claims(&self, algorithm: Algorithm) -> Result<(Vec<StateProperty>, String), Failure> {
+        let Some(path) = &self.options.claims else {
             return Ok(Default::default());
         };
-        if !matches!(self.algorithm.0, Algorithm::Apg) {
-            return Err(Failure::input(
-                format!("{} learns no claims", self.algorithm.0.name()),
-                "leave out --claims, or train apg",
-            ));
+        if !matches!(algorithm, Algorithm::Apg) {
+            return Err(Failure::ignored("--claims", algorithm.name()));
         }
         let text = read(path)?;
         let properties = Properties::read(&text)
@@ -163,9 +205,9 @@ impl Args {
 
     fn log(&self) -> Result<Option<Log>, Failure> {
         let open = |folder: &PathBuf| {
-            Log::open(folder, self.resume).map_err(|error| unwritable(folder, &error))
+            Log::open(folder, self.options.resume).map_err(|error| unwritable(folder, &error))
         };
-        self.log.as_ref().map(open).transpose()
+        self.options.log.as_ref().map(open).transpose()
     }
 
     fn checkpoint(&self) -> PathBuf {
@@ -174,7 +216,7 @@ impl Args {
 
     /// What the curve is drawn from; without `--log` there is none.
     fn panel<'e>(&self, dataset: &'e Dataset, lessons: &'e Lessons<'e>) -> Option<Panel<'e>> {
-        self.log.as_ref().map(|_| Panel {
+        self.options.log.as_ref().map(|_| Panel {
             train: &lessons.courses,
             validation: dataset.split(Split::Validation).map(Course::new).collect(),
         })
@@ -187,7 +229,7 @@ impl Args {
         panel: Option<Panel<'e>>,
     ) -> Result<Training<'e>, Failure> {
         let checkpoint = self.checkpoint();
-        if self.resume {
+        if self.options.resume {
             Training::resume(identity, lessons, panel, checkpoint)
         } else {
             Ok(Training::new(identity, lessons, panel, checkpoint))
@@ -199,7 +241,7 @@ impl Args {
         let mut bar = Bar::new(lessons);
         let done = training.finish(|report, run, point| {
             bar.show(report, run);
-            let (Some(log), Some(folder)) = (&mut log, &self.log) else {
+            let (Some(log), Some(folder)) = (&mut log, &self.options.log) else {
                 return Ok(());
             };
             let judged = point.map(scalars).unwrap_or_default();
@@ -219,38 +261,36 @@ impl Args {
     }
 
     fn provenance(&self, identity: &Identity, encounters: usize) -> Provenance {
-        let synthetic = self.source.data == "synthetic";
-        let data = if synthetic {
-            format!("synthetic, seed {}", self.data_seed)
-        } else {
-            format!("recordings of {}", self.source.site)
-        };
-        let mut command = format!("cede train {}", self.algorithm.0.name());
-        if synthetic {
-            command += &format!(
-                " --data synthetic --encounters {} --data-seed {}",
-                self.source.encounters, self.data_seed
+        let algorithm = self.method.algorithm.0.name();
+        let mut command = format!("cede train {algorithm}");
+        let data = if self.source.is_synthetic() {
+            let (least, seed) = (
+                self.source.encounters(),
+                self.options.data_seed.unwrap_or(DATA_SEED),
             );
+            command += &format!(" --data synthetic --encounters {least} --data-seed {seed}");
+            format!("synthetic, seed {seed}")
         } else {
-            command += &format!(" --data DIR --site {}", self.source.site);
-        }
-        if self.every_pair {
+            command += &format!(" --data DIR --site {}", self.source.site());
+            format!("recordings of {}", self.source.site())
+        };
+        if self.options.every_pair {
             command += " --every-pair";
         }
-        if let Some(path) = &self.claims {
+        if let Some(path) = &self.options.claims {
             command += &format!(" --claims {}", path.display());
         }
-        command += &format!(" --seed {}", self.seed);
-        for set in &self.set {
+        command += &format!(" --seed {}", self.options.seed);
+        for set in &self.method.set {
             command += &format!(" --set {set}");
         }
-        if self.settings.is_some() {
+        if self.method.settings.is_some() {
             command += " --settings FILE.toml";
         }
         Provenance {
-            algorithm: self.algorithm.0.name().to_owned(),
+            algorithm: algorithm.to_owned(),
             settings: identity.settings.text(),
-            seed: self.seed,
+            seed: self.options.seed,
             data,
             encounters,
             data_hash: identity.data,
@@ -263,7 +303,7 @@ impl Args {
             let problem = format!("the trained network is not usable: {error}");
             Failure::input(problem, "lower the learning rates, or change the width")
         })?;
-        write(&self.out, &words)?;
+        write(self.out, &words)?;
         output::write(&self.out.with_extension("txt"), |file| {
             file.write_all(provenance.text().as_bytes())
         })?;

@@ -40,7 +40,7 @@ pub struct Ego {
     pub acceleration: f32,
     /// Acceleration that it achieves, below its limiter's speed, when it must clear a zone, in m/s², in (0, `acceleration`].
     pub go: f32,
-    /// Braking that it achieves, and the hardest that is commanded, in m/s², in (0, 20].
+    /// Braking that it achieves, and the hardest that is commanded, in m/s², in (0, the others' `braking`].
     pub braking: f32,
 }
 
@@ -51,7 +51,7 @@ pub struct Other {
     pub max_speed: f32,
     /// Hardest acceleration in m/s², in (0, 20].
     pub acceleration: f32,
-    /// Hardest braking in m/s², in [the ego's `braking`, 20].
+    /// Hardest braking in m/s², in (0, 20].
     pub braking: f32,
 }
 
@@ -78,7 +78,7 @@ pub struct Precedence {
     /// Arrivals within this many periods of each other are a tie. If the one without the right of way
     /// came one period more before the other, nobody has precedence: the two may count differently.
     pub tie: u16,
-    /// Braking in m/s², in (0, 20], with which the other is expected to stop.
+    /// Braking in m/s², in (0, 20], with which the other is expected to stop; with `patience`, at most the ego's.
     pub braking: f32,
     /// Periods for which a vehicle with precedence may rest, while the other rests as well, before precedence
     /// goes to the other, and after twice, four times … as many back and forth; at least 5, or 0 if it is
@@ -96,37 +96,95 @@ impl Precedence {
     };
 }
 
-/// The first number of a [`Contract`] that is out of its range.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ContractError {
-    /// `period` or `latency`.
-    Time,
-    /// `position_error`, `speed_error` or `slack`.
-    Tolerance,
-    /// A number of [`Ego`].
-    Ego,
-    /// A number of [`Other`].
-    Other,
-    /// A number of [`Follower`].
-    Follower,
-    /// A number of [`Precedence`].
-    Precedence,
+/// The first number of a [`Contract`] that is out of its range. Prints as `ego.braking = 9 is outside (0, 8]`, with
+/// a reason where the range depends on other numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContractError {
+    field: &'static str,
+    value: f32,
+    range: Range,
+    why: &'static str,
+}
+
+impl ContractError {
+    /// Path of the field in [`Contract`], as in `ego.braking`.
+    #[must_use]
+    pub const fn field(&self) -> &'static str {
+        self.field
+    }
+
+    /// The value that it has.
+    #[must_use]
+    pub const fn value(&self) -> f32 {
+        self.value
+    }
 }
 
 impl core::fmt::Display for ContractError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::Time => "the period must be in (0, 1] s and the latency no longer",
-            Self::Tolerance => "an error or the slack is negative, or larger than 10",
-            Self::Ego => "the ego's speed, acceleration or braking is out of range",
-            Self::Other => "the others' speed, acceleration or braking is out of range",
-            Self::Follower => "the follower's reaction time or braking is out of range",
-            Self::Precedence => "a number of the rule of precedence is out of range, or it asks for turns of a vehicle that brakes or goes too gently",
-        })
+        let Range { open, low, high } = self.range;
+        let bracket = if open { '(' } else { '[' };
+        let Self {
+            field, value, why, ..
+        } = self;
+        write!(
+            f,
+            "{field} = {value} is outside {bracket}{low}, {high}]{why}"
+        )
     }
 }
 
 impl core::error::Error for ContractError {}
+
+/// From `low` to `high`, without `low` where it is `open`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Range {
+    open: bool,
+    low: f32,
+    high: f32,
+}
+
+impl Range {
+    /// `(low, high]`.
+    const fn above(low: f32, high: f32) -> Self {
+        let open = true;
+        Self { open, low, high }
+    }
+
+    /// `[low, high]`.
+    const fn from(low: f32, high: f32) -> Self {
+        let open = false;
+        Self { open, low, high }
+    }
+
+    /// The error of `field`, if `value` is not in the range.
+    fn check(self, field: &'static str, value: f32) -> Result<(), ContractError> {
+        self.check_since(field, value, "")
+    }
+
+    /// The same; `why` says what the range comes from.
+    fn check_since(
+        self,
+        field: &'static str,
+        value: f32,
+        why: &'static str,
+    ) -> Result<(), ContractError> {
+        let low = if self.open {
+            value > self.low
+        } else {
+            value >= self.low
+        };
+        if low && value <= self.high {
+            return Ok(());
+        }
+        Err(ContractError {
+            field,
+            value,
+            range: self,
+            why,
+        })
+    }
+}
 
 impl Contract {
     /// The worst case: others accelerate at 3 m/s² up to 15 m/s and may brake at 8; a command takes
@@ -166,54 +224,76 @@ impl Contract {
         0.25 * self.ego.go * self.period
     }
 
-    /// Whether a vehicle whose turn is past stops where the other expects it, and is seen if it does not: one that
-    /// goes gets faster, in spite of its limiter, than one that may be taken for one at rest.
-    fn takes_turns(&self, rule: Precedence) -> bool {
-        let rest = self.rest_speed() + 2.0 * self.speed_error;
-        self.ego.braking >= rule.braking && rest < self.ego.max_speed - self.speed_error
-    }
-
     /// The contract, if every number is in its range.
     ///
     /// # Errors
     /// The first that is not. Never panics.
     pub fn checked(self) -> Result<Self, ContractError> {
-        use ContractError as E;
-        let up_to = |value: f32, limit: f32| value > 0.0 && value <= limit;
-        let from_zero = |value: f32, limit: f32| value >= 0.0 && value <= limit;
-        let (ego, other, follower) = (self.ego, self.other, self.follower);
-        let checks = [
-            (up_to(self.period, 1.0), E::Time),
-            (from_zero(self.latency, self.period), E::Time),
-            (from_zero(self.position_error, 10.0), E::Tolerance),
-            (from_zero(self.speed_error, 10.0), E::Tolerance),
-            (from_zero(self.slack, 10.0), E::Tolerance),
-            (up_to(ego.max_speed, 100.0), E::Ego),
-            (up_to(ego.acceleration, 20.0), E::Ego),
-            (up_to(ego.go, ego.acceleration), E::Ego),
-            (up_to(ego.braking, 20.0), E::Ego),
-            (up_to(other.max_speed, 100.0), E::Other),
-            (up_to(other.acceleration, 20.0), E::Other),
-            (up_to(other.braking, 20.0), E::Other),
-            // The gap to a leader is smallest at the end only if the leader can brake harder.
-            (other.braking >= ego.braking, E::Other),
-            (from_zero(follower.reaction, 10.0), E::Follower),
-            (up_to(follower.braking, other.braking), E::Follower),
-            (
-                self.precedence
-                    .is_none_or(|p| up_to(p.distance, 200.0) && up_to(p.braking, 20.0)),
-                E::Precedence,
-            ),
-            (
-                self.precedence
-                    .is_none_or(|p| p.patience == 0 || (p.patience >= 5 && self.takes_turns(p))),
-                E::Precedence,
-            ),
-        ];
-        match checks.iter().find(|(holds, _)| !holds) {
-            Some(&(_, error)) => Err(error),
-            None => Ok(self),
+        Range::above(0.0, 1.0).check("period", self.period)?;
+        let late = ": a command takes effect before the next one";
+        Range::from(0.0, self.period).check_since("latency", self.latency, late)?;
+        let tolerance = Range::from(0.0, 10.0);
+        tolerance.check("position_error", self.position_error)?;
+        tolerance.check("speed_error", self.speed_error)?;
+        tolerance.check("slack", self.slack)?;
+        self.check_vehicles()?;
+        if let Some(rule) = self.precedence {
+            self.check_precedence(rule)?;
         }
+        Ok(self)
+    }
+
+    fn check_vehicles(&self) -> Result<(), ContractError> {
+        let (ego, other, follower) = (self.ego, self.other, self.follower);
+        let (speed, acceleration) = (Range::above(0.0, 100.0), Range::above(0.0, 20.0));
+        speed.check("other.max_speed", other.max_speed)?;
+        acceleration.check("other.acceleration", other.acceleration)?;
+        acceleration.check("other.braking", other.braking)?;
+        speed.check("ego.max_speed", ego.max_speed)?;
+        acceleration.check("ego.acceleration", ego.acceleration)?;
+        let commanded = ": it goes no harder than ego.acceleration, the hardest that is commanded";
+        Range::above(0.0, ego.acceleration).check_since("ego.go", ego.go, commanded)?;
+        // The gap to a leader is smallest at the end only if the leader can brake harder.
+        let leader =
+            ": it brakes no harder than other.braking, the hardest braking of a vehicle ahead";
+        Range::above(0.0, other.braking).check_since("ego.braking", ego.braking, leader)?;
+        Range::from(0.0, 10.0).check("follower.reaction", follower.reaction)?;
+        let hardest = ": it brakes no harder than other.braking, the hardest of all the others";
+        Range::above(0.0, other.braking).check_since("follower.braking", follower.braking, hardest)
+    }
+
+    fn check_precedence(&self, rule: Precedence) -> Result<(), ContractError> {
+        Range::above(0.0, 200.0).check("precedence.distance", rule.distance)?;
+        Range::above(0.0, 20.0).check("precedence.braking", rule.braking)?;
+        if rule.patience == 0 {
+            return Ok(());
+        }
+        let turns = "; 0 leaves out the turns";
+        Range::from(5.0, f32::from(u16::MAX)).check_since(
+            "precedence.patience",
+            f32::from(rule.patience),
+            turns,
+        )?;
+        // A vehicle whose turn is past stops where the other expects it.
+        let stops =
+            ": who takes turns stops as hard as it is expected to, and has ego.braking to do so";
+        Range::above(0.0, self.ego.braking).check_since(
+            "precedence.braking",
+            rule.braking,
+            stops,
+        )?;
+        // One that goes is seen: it gets faster, in spite of its limiter, than one that may be taken for one at rest.
+        let seen = ": who takes turns must be seen to go, in spite of speed_error";
+        let rest = self.rest_speed() + 2.0 * self.speed_error;
+        if rest < self.ego.max_speed - self.speed_error {
+            return Ok(());
+        }
+        Err(ContractError {
+            field: "ego.max_speed",
+            value: self.ego.max_speed,
+            range: Range::above(rest + self.speed_error, 100.0),
+            why: seen,
+        })
     }
 }
 
@@ -227,16 +307,74 @@ mod tests {
         assert!(Contract::ALL_WAY_STOP.checked().is_ok());
     }
 
+    /// What is said of the worst case, or of the all-way stop, after `change`.
+    fn said(contract: Contract, change: impl FnOnce(&mut Contract)) -> std::string::String {
+        let mut changed = contract;
+        change(&mut changed);
+        std::string::ToString::to_string(&changed.checked().unwrap_err())
+    }
+
     #[test]
-    fn numbers_out_of_range_are_named() {
-        let mut contract = Contract::WORST_CASE;
-        contract.latency = 0.2;
-        assert_eq!(contract.checked(), Err(ContractError::Time));
-        contract = Contract::WORST_CASE;
-        contract.ego.go = f32::NAN;
-        assert_eq!(contract.checked(), Err(ContractError::Ego));
-        contract = Contract::WORST_CASE;
-        contract.ego.braking = 9.0;
-        assert_eq!(contract.checked(), Err(ContractError::Other));
+    fn numbers_out_of_range_are_named_with_value_and_range() {
+        let worst = |change: fn(&mut Contract)| said(Contract::WORST_CASE, change);
+        let begins = |text: std::string::String, beginning: &str| {
+            assert!(text.starts_with(beginning), "{text}");
+        };
+        begins(worst(|c| c.period = 0.0), "period = 0 is outside (0, 1]");
+        begins(
+            worst(|c| c.latency = 0.2),
+            "latency = 0.2 is outside [0, 0.1]: ",
+        );
+        begins(
+            worst(|c| c.position_error = -1.0),
+            "position_error = -1 is outside [0, 10]",
+        );
+        begins(worst(|c| c.slack = 11.0), "slack = 11 is outside [0, 10]");
+        begins(
+            worst(|c| c.ego.braking = 9.0),
+            "ego.braking = 9 is outside (0, 8]: ",
+        );
+        begins(
+            worst(|c| c.ego.go = f32::NAN),
+            "ego.go = NaN is outside (0, 3]: ",
+        );
+        begins(
+            worst(|c| c.other.braking = 21.0),
+            "other.braking = 21 is outside (0, 20]",
+        );
+        begins(
+            worst(|c| c.follower.braking = 8.5),
+            "follower.braking = 8.5 is outside (0, 8]: ",
+        );
+    }
+
+    #[test]
+    fn numbers_of_the_rule_of_precedence_are_named() {
+        let stop = |change: fn(&mut Contract, &mut Precedence)| {
+            said(Contract::ALL_WAY_STOP, |contract| {
+                let mut rule = Precedence::ALL_WAY_STOP;
+                change(contract, &mut rule);
+                contract.precedence = Some(rule);
+            })
+        };
+        let begins = |text: std::string::String, beginning: &str| {
+            assert!(text.starts_with(beginning), "{text}");
+        };
+        begins(
+            stop(|_, rule| rule.distance = 0.0),
+            "precedence.distance = 0 is outside (0, 200]",
+        );
+        begins(
+            stop(|_, rule| rule.patience = 4),
+            "precedence.patience = 4 is outside [5, 65535]; 0 ",
+        );
+        begins(
+            stop(|_, rule| rule.braking = 3.5),
+            "precedence.braking = 3.5 is outside (0, 3]: ",
+        );
+        begins(
+            stop(|contract, _| contract.speed_error = 6.0),
+            "ego.max_speed = 15 is outside (18.075, 100]: ",
+        );
     }
 }

@@ -27,7 +27,7 @@ pub enum Baseline {
 }
 
 /// Why there are no drivers of a kind.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum FitError {
     /// It learns from recorded encounters, and there is none to learn from.
     #[error("driver `{0}` is fitted on the training split, which is empty here")]

@@ -109,7 +109,8 @@ impl Row {
             episode_length_error: length.map(|mean| mean.mean),
             // An error is never negative, whatever the normal approximation says.
             episode_length_error_interval: length
-                .map(|mean| mean.interval().map(|bound| bound.max(0.0))),
+                .and_then(Mean::interval)
+                .map(|interval| interval.map(|bound| bound.max(0.0))),
             episode_length_error_s: mean(measures().map(|m| m.length_error_s)),
             collisions: collisions.count,
             collision_share_interval: collisions.interval(),

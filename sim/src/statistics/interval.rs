@@ -32,13 +32,13 @@ impl Share {
         (self.n > 0).then(|| self.count as f64 / self.n as f64)
     }
 
-    /// Wilson's 95 % score interval of the fraction; `None` without trials.
+    /// Wilson's 95 % score interval of the fraction; `None` for fewer than two trials.
     ///
     /// Source: E. B. Wilson, "Probable inference, the law of succession, and statistical
     /// inference", Journal of the American Statistical Association 22 (1927).
     #[must_use]
     pub fn interval(self) -> Option<[f64; 2]> {
-        let p = self.fraction()?;
+        let p = self.fraction().filter(|_| self.n > 1)?;
         let n = self.n as f64;
         let (z2, scale) = (Z * Z, 1.0 + Z * Z / n);
         let centre = (p + z2 / (2.0 * n)) / scale;
@@ -73,11 +73,11 @@ impl Mean {
         Some(Self { n, mean, deviation })
     }
 
-    /// The 95 % interval of the mean by the normal approximation.
+    /// The 95 % interval of the mean by the normal approximation; `None` for a single value.
     #[must_use]
-    pub fn interval(self) -> [f64; 2] {
+    pub fn interval(self) -> Option<[f64; 2]> {
         let half = Z * self.deviation / (self.n as f64).sqrt();
-        [self.mean - half, self.mean + half]
+        (self.n > 1).then_some([self.mean - half, self.mean + half])
     }
 }
 
@@ -108,6 +108,7 @@ mod tests {
     fn nothing_has_no_share_and_no_mean() {
         assert_eq!(Share::of([]).fraction(), None);
         assert_eq!(Share::of([]).interval(), None);
+        assert_eq!(Share::of([true]).interval(), None);
         assert_eq!(Mean::of([]), None);
     }
 
@@ -116,8 +117,8 @@ mod tests {
         let mean = Mean::of([1.0, 2.0, 3.0, 4.0]).unwrap();
         assert_eq!((mean.n, mean.mean), (4, 2.5));
         assert!(close(mean.deviation, (5.0_f64 / 3.0).sqrt()));
-        let [low, high] = mean.interval();
+        let [low, high] = mean.interval().unwrap();
         assert!(close(high - 2.5, 1.26517) && close(low + high, 5.0));
-        assert_eq!(Mean::of([7.0]).unwrap().interval(), [7.0, 7.0]);
+        assert_eq!(Mean::of([7.0]).unwrap().interval(), None);
     }
 }

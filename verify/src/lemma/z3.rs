@@ -1,9 +1,11 @@
 //! The solver: Z3, as a program of its own.
 
 use super::formula::Script;
-use std::io::Write as _;
+use std::collections::HashMap;
+use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
+use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 /// A quantity of a witness.
@@ -106,23 +108,54 @@ impl Solver {
     }
 
     fn run(&self, script: &Script, limit: Duration) -> std::io::Result<String> {
-        let mut child = Command::new(&self.path)
+        let mut command = Command::new(&self.path);
+        command
             .arg("-in")
             .arg(format!("-T:{}", limit.as_secs().max(1)))
             .arg("pp.decimal=true")
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()?;
-        if let Some(mut input) = child.stdin.take() {
+            .stderr(Stdio::null());
+        let (id, input, output) = {
+            let mut running = running();
+            let mut child = command.spawn()?;
+            let (id, input, output) = (child.id(), child.stdin.take(), child.stdout.take());
+            running.insert(id, child);
+            (id, input, output)
+        };
+        if let Some(mut input) = input {
             let names: Vec<&str> = script.symbols.iter().map(|s| s.name).collect();
             let values = format!("(get-value ({}))\n", names.join(" "));
             // Whatever it makes of it is in what it says.
             let _ = input.write_all((script.text.clone() + &values).as_bytes());
         }
-        let output = child.wait_with_output()?;
-        Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+        let mut said = Vec::new();
+        let read = output.map_or(Ok(0), |mut output| output.read_to_end(&mut said));
+        // It has said all: it ends now.
+        if let Some(mut child) = running().remove(&id) {
+            child.wait()?;
+        }
+        read?;
+        Ok(String::from_utf8_lossy(&said).into_owned())
     }
+}
+
+/// The solvers at work, by their process numbers.
+static RUNNING: LazyLock<Mutex<HashMap<u32, Child>>> = LazyLock::new(Mutex::default);
+
+fn running() -> MutexGuard<'static, HashMap<u32, Child>> {
+    RUNNING.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Ends the solvers at work, for a program that is about to end itself. From now on, threads that ask one wait for
+/// that end.
+pub fn abandon() {
+    let mut solvers = running();
+    for solver in solvers.values_mut() {
+        // One that has ended by itself is no failure.
+        let _ = solver.kill();
+    }
+    std::mem::forget(solvers);
 }
 
 fn answer(script: &Script, said: &str) -> Answer {

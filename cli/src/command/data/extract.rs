@@ -1,7 +1,7 @@
 //! `cede data extract`: the encounters as rows of a CSV.
 
 use crate::failure::Failure;
-use crate::source::Source;
+use crate::source::{Source, not_empty};
 use cede_controller::ConflictKind;
 use cede_data::{Dataset, Encounter, Manoeuvre, Role, STEP_MS, Summary, output};
 use serde::Serialize;
@@ -15,9 +15,9 @@ pub(crate) struct Args {
     /// Write the encounters to this CSV file
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Seed of synthetic encounters
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
+    /// Seed of synthetic encounters [default: 0]
+    #[arg(long)]
+    seed: Option<u64>,
     /// Print the counts as one JSON object
     #[arg(long)]
     json: bool,
@@ -91,8 +91,9 @@ impl<'d> Row<'d> {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let dataset = args.source.load(args.seed)?;
+    let dataset = args.source.load_seeded("--seed", args.seed, 0)?;
     super::name_passed_over(&dataset);
+    not_empty(&dataset)?;
     if let Some(path) = &args.out {
         output::write(path, |out| {
             let mut csv = csv::Writer::from_writer(out);

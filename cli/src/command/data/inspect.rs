@@ -1,8 +1,9 @@
 //! `cede data inspect`: the recordings in numbers and as a drawing.
 
 use crate::failure::Failure;
+use crate::plural::Count;
 use crate::scene;
-use crate::source::Source;
+use crate::source::{Source, not_empty};
 use cede_data::{Distribution, Summary};
 use std::path::PathBuf;
 
@@ -12,32 +13,44 @@ pub(crate) struct Args {
     #[command(flatten)]
     source: Source,
     /// Where the drawing goes
-    #[arg(long, default_value = "out/scene.svg", value_name = "FILE")]
+    #[arg(long, default_value = "out/scene.svg", value_name = "FILE.svg", value_parser = svg)]
     draw: PathBuf,
-    /// Seed of synthetic encounters
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
+    /// Seed of synthetic encounters [default: 0]
+    #[arg(long)]
+    seed: Option<u64>,
     /// Print the numbers as one JSON object
     #[arg(long)]
     json: bool,
 }
 
+/// The path of a drawing.
+fn svg(path: &str) -> Result<PathBuf, &'static str> {
+    let path = PathBuf::from(path);
+    if path.extension().is_some_and(|ending| ending == "svg") {
+        Ok(path)
+    } else {
+        Err("drawings are SVG: the file's name has to end in .svg")
+    }
+}
+
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let dataset = args.source.load(args.seed)?;
+    let dataset = args.source.load_seeded("--seed", args.seed, 0)?;
     super::name_passed_over(&dataset);
     let summary = Summary::of(&dataset);
     scene::write(&args.draw, &dataset)?;
     eprintln!("drawn in {}", args.draw.display());
     if args.json {
-        return super::print_json(&summary);
+        super::print_json(&summary)?;
+    } else {
+        print(&summary);
     }
-    print(&summary);
-    Ok(())
+    not_empty(&dataset)
 }
 
 fn print(summary: &Summary) {
-    println!("{}: {} encounters\n", summary.site, summary.encounters);
+    let encounters = Count(summary.encounters, "encounter");
+    println!("{}: {encounters}\n", summary.site);
     println!("file  minutes  vehicles  encounters");
     for file in &summary.files {
         let minutes = file.duration_s / 60.0;

@@ -5,14 +5,19 @@ use cede_controller::shield::Sound;
 use cede_sim::campaign::{Setup, Tally, campaign};
 use clap::Args;
 
+/// What `cede help verify campaign` says beside the options.
+const HELP: &str = "\
+Drives shielded vehicles among adversaries, judged by rapier2d. Exit code 1 if one of them touches anybody.";
+
 /// Scenarios of one set-up that are run before the next.
 const BATCH: u64 = 500;
 
-/// Drives shielded vehicles among adversaries, judged by rapier2d; exit code 1 if one of them touches anybody.
+/// Options of `cede verify campaign`.
 #[derive(Args)]
+#[command(after_help = HELP)]
 pub(crate) struct Campaign {
     /// Steps of shielded vehicles to run, at least.
-    #[arg(long, default_value_t = 1_000_000)]
+    #[arg(long, default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..))]
     steps: u64,
     /// Seed of the first scenario.
     #[arg(long, default_value_t = 1)]

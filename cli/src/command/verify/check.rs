@@ -8,9 +8,14 @@ use miette::{IntoDiagnostic, WrapErr};
 use std::io::Write as _;
 use std::path::PathBuf;
 
-/// Exit code 0 if the certificate proves what it says, 1 if it does not. Network and property are
-/// found as the certificate names them, from the present folder, unless given here.
+/// What `cede help verify check` says beside the options.
+const HELP: &str = "\
+Exit code 0 if the certificate proves what it says, 1 if it does not. Network and property are found as the
+certificate names them, from the present folder, unless they are given here.";
+
+/// Options of `cede verify check`.
 #[derive(Args)]
+#[command(after_help = HELP)]
 pub(crate) struct Check {
     /// The certificate.
     #[arg(value_name = "CERT")]

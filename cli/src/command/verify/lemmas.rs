@@ -1,19 +1,24 @@
 //! `cede verify lemmas`.
 
 use crate::failure::Failure;
+use crate::threads::Threads;
 use cede_data::output;
 use cede_verify::lemma::{Answer, Lemma, Quantity, Settled, Solver, SolverError, lemmas};
 use clap::Args;
-use miette::IntoDiagnostic;
 use rayon::prelude::*;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Has Z3 prove the steps of the shield's theorem (`docs/shield.md`), over the reals, from the margins that
-/// the vehicle executes; and refute each of them with a rule broken. Exit code 1 if a lemma is refuted or
-/// left open, or holds in spite of a broken rule.
+/// What `cede help verify lemmas` says beside the options.
+const HELP: &str = "\
+Z3 proves the steps of the shield's theorem (docs/shield.md), over the reals, from the margins that the vehicle
+executes, and refutes each of them with a rule broken. Exit code 1 if a lemma is refuted or left open, or holds in
+spite of a broken rule.";
+
+/// Options of `cede verify lemmas`.
 #[derive(Args)]
+#[command(after_help = HELP)]
 pub(crate) struct Lemmas {
     /// Only this one.
     #[arg(long, value_name = "LEMMA", value_parser = known)]
@@ -27,9 +32,8 @@ pub(crate) struct Lemmas {
     /// Also leave the questions here, as SMT-LIB files, for other solvers.
     #[arg(long, value_name = "DIR")]
     write: Option<PathBuf>,
-    /// Threads, each of which runs a solver; all cores by default.
-    #[arg(long, default_value_t = 0)]
-    threads: usize,
+    #[command(flatten)]
+    threads: Threads,
     /// Print one JSON object instead.
     #[arg(long)]
     json: bool,
@@ -70,12 +74,8 @@ impl Lemmas {
             let settled = lemma.settle(solver, limit).map_err(unusable)?;
             Ok((lemma, settled))
         };
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(self.threads)
-            .build()
-            .into_diagnostic()
-            .map_err(Failure::Input)?;
-        pool.install(|| lemmas.into_par_iter().map(settle).collect())
+        self.threads.start()?;
+        lemmas.into_par_iter().map(settle).collect()
     }
 
     fn told(&self, solver: &Solver, rows: &[Row]) -> String {

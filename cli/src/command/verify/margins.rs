@@ -1,12 +1,17 @@
 //! `cede verify margins`.
 
 use crate::failure::Failure;
+use crate::threads::Threads;
 use cede_controller::junction::zone::INFLATION;
 use cede_controller::shield::Contract;
 use cede_verify::margin::{Bound, Predicate, bound, shortfall};
 use clap::Args;
-use miette::IntoDiagnostic;
 use std::io::Write as _;
+
+/// What `cede help verify margins` says beside the options.
+const HELP: &str = "\
+How far f32 can be from the reals where the shield decides. Exit code 1 if it is not shown that its slack covers
+the difference.";
 
 /// The contracts whose margins are bounded: what the rule of precedence adds has none.
 const CONTRACTS: [(&str, Contract); 2] = [
@@ -24,16 +29,15 @@ const CONTRACTS: [(&str, Contract); 2] = [
 /// How fast (m/s) an ego may be when it stops going.
 const FASTEST: f64 = 20.0;
 
-/// How far can `f32` be from the reals where the shield decides? Exit code 1 if it is not shown that its slack
-/// covers the difference.
+/// Options of `cede verify margins`.
 #[derive(Args)]
+#[command(after_help = HELP)]
 pub(crate) struct Margins {
     /// Boxes of inputs to bound for each predicate, at most: with more the bounds are sharper.
-    #[arg(long, default_value_t = 1_000_000)]
+    #[arg(long, default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..))]
     boxes: u64,
-    /// Threads to search on; all cores by default.
-    #[arg(long, default_value_t = 0)]
-    threads: usize,
+    #[command(flatten)]
+    threads: Threads,
     /// Print one JSON object instead.
     #[arg(long)]
     json: bool,
@@ -50,14 +54,9 @@ struct Row {
 impl Margins {
     /// Runs the command.
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(self.threads)
-            .build()
-            .into_diagnostic();
-        let (rows, short) = pool.map_err(Failure::Input)?.install(|| {
-            let short = shortfall(&Contract::WORST_CASE);
-            (self.rows(), short)
-        });
+        self.threads.start()?;
+        let short = shortfall(&Contract::WORST_CASE);
+        let rows = self.rows();
         // A reader that has seen enough may close the pipe.
         let _ = writeln!(std::io::stdout(), "{}", self.told(&rows, short));
         let mut open: Vec<String> = rows

@@ -1,6 +1,7 @@
 //! `cede verify network`.
 
 use crate::failure::Failure;
+use crate::threads::Threads;
 use cede_data::output;
 use cede_nnv::{self as verifier, Answer, Branching, Report, SearchOptions};
 use cede_nnv_check::{self as trusted, Certificate};
@@ -10,10 +11,14 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// The answer is about the network's real-number semantics: the exact values of its weights, and
-/// no rounding. First line of stdout: unsat (proved), sat (refuted; a witness follows in the
-/// VNN-COMP format), timeout or unknown.
+/// What `cede help verify network` says beside the options.
+const HELP: &str = "\
+The answer is about the network's real-number semantics: the exact values of its weights, and no rounding.
+First line of stdout: unsat (proved), sat (refuted; a witness follows in the VNN-COMP format), timeout or unknown.";
+
+/// Options of `cede verify network`.
 #[derive(Args)]
+#[command(after_help = HELP)]
 pub(crate) struct Network {
     /// The network, ONNX.
     #[arg(long, value_name = "FILE")]
@@ -24,9 +29,8 @@ pub(crate) struct Network {
     /// Give up after so many seconds.
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
     timeout: f64,
-    /// Threads to search on; all cores by default.
-    #[arg(long, default_value_t = 0)]
-    threads: usize,
+    #[command(flatten)]
+    threads: Threads,
     /// Seed of the search for counterexamples.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -77,14 +81,8 @@ impl Network {
             .seed(self.seed)
             .branching(self.branching.into())
             .record(self.certificate.is_some());
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(self.threads)
-            .build()
-            .into_diagnostic();
-        let pool = pool.map_err(Failure::Input)?;
-        let report = pool
-            .install(|| verifier::verify(&network, &property, options))
-            .into_diagnostic();
+        self.threads.start()?;
+        let report = verifier::verify(&network, &property, options).into_diagnostic();
         let mut report = report.map_err(Failure::Input)?;
         if let (Some(path), Answer::Unsat) = (&self.certificate, &report.answer) {
             let proofs = std::mem::take(&mut report.proofs);

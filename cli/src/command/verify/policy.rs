@@ -1,6 +1,7 @@
 //! `cede verify policy`.
 
 use crate::failure::Failure;
+use crate::threads::Threads;
 use cede_controller::policy::weights::words;
 use cede_controller::{Perspective, Weights};
 use cede_formats::property::{Properties, StateProperty};
@@ -11,12 +12,17 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+/// What `cede help verify policy` says beside the options.
+const HELP: &str = "\
+A proof is about what the controller computes in f32; a refutation is a state at which it was run.
+Exit code 1 if a property is not proved.";
+
 /// What is claimed of the embedded policy.
 const PROPERTIES: &str = include_str!("../../../../docs/safety/policy.toml");
 
-/// Settles each property of a file for a policy. A proof is about what the controller computes in
-/// `f32`; a refutation is a state at which it was run. Exit code 1 if a property is not proved.
+/// Options of `cede verify policy`.
 #[derive(Args)]
+#[command(after_help = HELP)]
 pub(crate) struct Policy {
     /// The policy (`.cede`); the embedded one if none is given.
     #[arg(long, value_name = "FILE")]
@@ -34,9 +40,8 @@ pub(crate) struct Policy {
     /// Also find the largest region, scaled about its centre, on which each property is proved.
     #[arg(long)]
     sweep: bool,
-    /// Threads to search on; all cores by default.
-    #[arg(long, default_value_t = 0)]
-    threads: usize,
+    #[command(flatten)]
+    threads: Threads,
     /// Print one JSON object instead.
     #[arg(long)]
     json: bool,
@@ -49,13 +54,8 @@ impl Policy {
         let weights = named(place, Weights::parse(&words).map_err(|e| miette!("{e}")))?;
         let subject = named(place, Subject::new(weights).into_diagnostic())?;
         let properties = self.properties()?;
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(self.threads)
-            .build()
-            .into_diagnostic();
-        let rows: Vec<Row<'_>> = pool
-            .map_err(Failure::Input)?
-            .install(|| properties.iter().map(|p| self.row(&subject, p)).collect());
+        self.threads.start()?;
+        let rows: Vec<Row<'_>> = properties.iter().map(|p| self.row(&subject, p)).collect();
         // A reader that has seen enough may close the pipe.
         let _ = writeln!(std::io::stdout(), "{}", self.told(&subject, &rows));
         let open: Vec<&str> = rows

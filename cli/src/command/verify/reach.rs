@@ -2,6 +2,7 @@
 
 use super::policy::{named, policy_words};
 use crate::failure::Failure;
+use crate::threads::Threads;
 use cede_controller::Weights;
 use cede_verify::policy::Subject;
 use cede_verify::reach::{Finding, Scenario, Scenarios, Settled, settle};
@@ -11,12 +12,16 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+/// What `cede help verify reach` says beside the options.
+const HELP: &str = "\
+From all states of a region. Exit code 1 if a scenario's claim is not proved.";
+
 /// What is claimed of the embedded policy behind its shield.
 const SCENARIOS: &str = include_str!("../../../../docs/safety/reach.toml");
 
-/// Where can policy, shield and kinematics get to, from all states of a region? Exit code 1 if a
-/// scenario's claim is not proved.
+/// Options of `cede verify reach`.
 #[derive(Args)]
+#[command(after_help = HELP)]
 pub(crate) struct Reach {
     /// The policy (`.cede`); the embedded one if none is given.
     #[arg(long, value_name = "FILE")]
@@ -28,9 +33,8 @@ pub(crate) struct Reach {
     /// Give up on a scenario after so many seconds.
     #[arg(long, value_name = "SECONDS", default_value_t = 120)]
     timeout: u64,
-    /// Threads to search on; all cores by default.
-    #[arg(long, default_value_t = 0)]
-    threads: usize,
+    #[command(flatten)]
+    threads: Threads,
     /// Print one JSON object instead.
     #[arg(long)]
     json: bool,
@@ -43,18 +47,13 @@ impl Reach {
         let weights = named(place, Weights::parse(&words).map_err(|e| miette!("{e}")))?;
         let subject = named(place, Subject::new(weights).into_diagnostic())?;
         let scenarios = self.read()?.scenario;
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(self.threads)
-            .build()
-            .into_diagnostic();
+        self.threads.start()?;
         let limit = Duration::from_secs(self.timeout);
-        let settled: Vec<(Scenario, Settled)> = pool.map_err(Failure::Input)?.install(|| {
-            let settle = |scenario: Scenario| {
-                let settled = settle(&subject, &scenario, Instant::now() + limit);
-                (scenario, settled)
-            };
-            scenarios.into_iter().map(settle).collect()
-        });
+        let settle = |scenario: Scenario| {
+            let settled = settle(&subject, &scenario, Instant::now() + limit);
+            (scenario, settled)
+        };
+        let settled: Vec<(Scenario, Settled)> = scenarios.into_iter().map(settle).collect();
         // A reader that has seen enough may close the pipe.
         let _ = writeln!(std::io::stdout(), "{}", self.told(&settled));
         let open: Vec<&str> = settled

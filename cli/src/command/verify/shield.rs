@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::report::{Report, command};
+use crate::source::not_empty;
 use cede_controller::{ConflictKind, Contract};
 use cede_data::{Dataset, Encounter};
 use cede_sim::transparency::{Swept, Transparency, sweep, transparency};
@@ -9,9 +10,14 @@ use clap::Args;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-/// The share of recorded steps that the shield accepts; exit code 1 if it is below 99.5 % at
-/// crossings or 99 % at merges under the worst-case contract.
+/// What `cede help verify shield` says beside the options.
+const HELP: &str = "\
+Exit code 1 if the share of recorded steps that the shield accepts is below 99.5 % at crossings or 99 % at merges
+under the worst-case contract.";
+
+/// Options of `cede verify shield`.
 #[derive(Args)]
+#[command(after_help = HELP)]
 pub(crate) struct Shield {
     /// Folder of the recordings.
     #[arg(long)]
@@ -31,6 +37,7 @@ impl Shield {
     /// Runs the command.
     pub(crate) fn run(self) -> Result<(), Failure> {
         let data = Dataset::load(&self.data, &self.site)?;
+        not_empty(&data)?;
         let encounters: Vec<&Encounter> = data.encounters.iter().collect();
         println!("contract          kind       role    steps  accepted");
         let mut worst = Vec::new();
