@@ -10,7 +10,7 @@ use cede_sim::{Dataset, Encounter};
 use cede_train::checkpoint::Checkpoint;
 use cede_train::curve::Curve;
 use cede_train::run::{Algorithm, Lessons, Run};
-use cede_verify::network::{self, Answer, Certificate, Settings};
+use cede_verify::network::{self, Answer, Certificate, Network, Settings};
 use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
@@ -24,7 +24,13 @@ fn main() -> Result<()> {
     write("weights/narrow.cede", &bytes)?;
     write("policy_onnx/narrow.onnx", &graph)?;
     write("network_onnx/narrow.onnx", &graph)?;
-    write("certificate/narrow.cert", certificate(&graph)?.as_bytes())?;
+    let network = network::onnx::read(&graph)?;
+    let property = property(&network)?;
+    write("vnnlib/narrow.vnnlib", property.as_bytes())?;
+    write(
+        "certificate/narrow.cert",
+        certificate(&network, &property)?.as_bytes(),
+    )?;
     write("tracks/turn.csv", tracks()?.as_bytes())?;
     write("interaction/turn.csv", interaction()?.as_bytes())?;
     checkpoint()?.save(&path("checkpoint/begun.checkpoint"))?;
@@ -32,7 +38,9 @@ fn main() -> Result<()> {
 }
 
 fn path(name: &str) -> std::path::PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("seeds").join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("seeds")
+        .join(name)
 }
 
 fn write(name: &str, content: &[u8]) -> Result<()> {
@@ -58,9 +66,8 @@ fn policy() -> Result<Vec<u32>> {
     Ok(words)
 }
 
-/// A proof of something that holds of the policy: it never commands 10 m/s².
-fn certificate(graph: &[u8]) -> Result<String> {
-    let network = network::onnx::read(graph)?;
+/// Something that holds of the policy: it never commands 10 m/s².
+fn property(network: &Network) -> Result<String> {
     let mut text = String::new();
     for input in 0..network.inputs() {
         writeln!(text, "(declare-const X_{input} Real)")?;
@@ -70,11 +77,16 @@ fn certificate(graph: &[u8]) -> Result<String> {
         writeln!(text, "(declare-const Y_{output} Real)")?;
     }
     writeln!(text, "(assert (>= Y_0 10))")?;
+    Ok(text)
+}
+
+/// The proof of `property`.
+fn certificate(network: &Network, property: &str) -> Result<String> {
     let settings = Settings {
         record: true,
         ..Settings::default()
     };
-    let report = network::verify(&network, &network::vnnlib::read(&text)?, settings)?;
+    let report = network::verify(network, &network::vnnlib::read(property)?, settings)?;
     if report.answer != Answer::Unsat {
         return Err("the property does not hold".into());
     }
@@ -94,7 +106,10 @@ fn motion(track: u32, step: u32) -> [f64; 4] {
 
 fn tracks() -> Result<String> {
     let mut text = "track,t,x,y\n".to_owned();
-    for (track, step) in [1, 2].into_iter().flat_map(|t| (0..5).map(move |s| (t, 10 * s))) {
+    for (track, step) in [1, 2]
+        .into_iter()
+        .flat_map(|t| (0..5).map(move |s| (t, 10 * s)))
+    {
         let [x, y, ..] = motion(track, step);
         writeln!(text, "{track},{},{x},{y}", step / 10)?;
     }
@@ -104,7 +119,10 @@ fn tracks() -> Result<String> {
 fn interaction() -> Result<String> {
     let mut text =
         "track_id,frame_id,timestamp_ms,agent_type,x,y,vx,vy,psi_rad,length,width\n".to_owned();
-    for (track, step) in [1, 2].into_iter().flat_map(|t| (0..41).map(move |s| (t, s))) {
+    for (track, step) in [1, 2]
+        .into_iter()
+        .flat_map(|t| (0..41).map(move |s| (t, s)))
+    {
         let [x, y, vx, vy] = motion(track, step);
         let (frame, heading) = (step + 1, vy.atan2(vx));
         writeln!(
