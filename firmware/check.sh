@@ -4,8 +4,11 @@
 # Shows as well that a planted panic, a planted allocation and one changed bit are found.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-firmware/setup.sh
 build=$PWD/.build/cortex-m
+mkdir -p "$build"
+exec 8>"$build/check.lock" # one check at a time: they share a log and golden decisions
+flock 8
+firmware/setup.sh
 source "$build/env"
 target=thumbv7em-none-eabihf
 max_flash=65536
@@ -18,11 +21,11 @@ workspace=firmware/cortex-m/Cargo.toml
 
 # The host's side: observations, and its decisions.
 mkdir -p "$build/golden" "$build/tampered"
-"${cargo[@]}" run --release --manifest-path $workspace --target-dir "$build/host" -p cede-golden -- "$build/golden"
+"${cargo[@]}" run --locked --release --manifest-path $workspace --target-dir "$build/host" -p cede-golden -- "$build/golden"
 
 # Lints see the host's build of the same code: they need no target, and nothing is linked.
 if "${cargo[@]}" clippy --version >/dev/null 2>&1; then
-    CEDE_GOLDEN=$build/golden "${cargo[@]}" clippy --manifest-path $workspace --target-dir "$build/host" --workspace -- -D warnings
+    CEDE_GOLDEN=$build/golden "${cargo[@]}" clippy --locked --manifest-path $workspace --target-dir "$build/host" --workspace -- -D warnings
 fi
 
 linker=$(rustc --print sysroot)/lib/rustlib/$(rustc --print host-tuple)/bin/rust-lld
@@ -34,7 +37,7 @@ image() {
     local golden=$1
     shift
     [ -z "$cortex_compiler" ] || export RUSTC=$cortex_compiler
-    CEDE_GOLDEN=$golden "${cargo[@]}" build --release --manifest-path $workspace \
+    CEDE_GOLDEN=$golden "${cargo[@]}" build --locked --release --manifest-path $workspace \
         --target-dir "$build/target" --target $target -p cede-cortex-m "$@" >&2 || return
     echo "$build/target/$target/release/cede-cortex-m"
 }

@@ -2,81 +2,168 @@
 # Sets up what the Cortex-M lane needs, in .build/cortex-m, and leaves the rest of the machine as it is.
 #
 # What is already installed is used: rustup's target, QEMU, the GNU tools. What is missing comes from
-# Debian's packages (root on Debian 12; downloaded and unpacked, not installed): no toolchain is fetched.
+# Debian's packages (root on Debian; downloaded and unpacked, not installed): no toolchain is fetched.
 # At the end .build/cortex-m/env holds the variables that firmware/check.sh reads.
+#
+# Whatever is unpacked or built appears under its final name only when it is whole, so an interrupted
+# set-up is begun again; the name holds the packages' versions.
 set -euo pipefail
+shopt -s inherit_errexit nullglob
 cd "$(dirname "$0")/.."
 build=$PWD/.build/cortex-m
-root=$build/root
 target=thumbv7em-none-eabihf
-rm -rf "$build/bin"
-mkdir -p "$build/bin" "$build/debs/partial"
+rust_version=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)
+libraries=x86_64-linux-gnu # Debian's folder of the host's libraries
 
+fail() {
+    echo "firmware/setup.sh: $*" >&2
+    exit 1
+}
 has_target() { [ -d "$(rustc --print target-libdir --target $target 2>/dev/null)" ]; }
+at_least() { printf '%s\n%s\n' "$1" "$2" | sort -VC; } # WANTED VERSION
+
+# One set-up at a time; the others wait. What a killed one has left is removed.
+mkdir -p "$build"
+exec 9>"$build/lock"
+flock 9
+rm -rf "$build"/new.*
+new=$(mktemp -d "$build/new.XXXXXX")
+trap 'rm -rf "$new"' EXIT
 
 packages=()
 has_target || packages+=(rustc-web rust-web-src)
 command -v qemu-system-arm >/dev/null || packages+=(qemu-system-arm)
 command -v arm-none-eabi-nm >/dev/null || packages+=(binutils-arm-none-eabi)
 
-# The stamp names what was unpacked, so a machine that gains or loses a tool is set up anew.
-stamp="$build/unpacked ${packages[*]}"
-if [ ${#packages[@]} -gt 0 ] && [ ! -e "${stamp// /+}" ]; then
+# An index of the set-up's own: the machine's may be stale, or another program may be writing it.
+apt=(-o "Dir::State::lists=$new/lists" -o "Dir::Cache=$new/cache" -o APT::Sandbox::User=root
+    -o DPkg::Lock::Timeout=300 -o Acquire::Retries=3)
+
+# fetch: downloads the packages, checks their versions, unpacks them as $build/tools+NAME=VERSION+...
+fetch() {
+    command -v apt-get >/dev/null && [ "$(id -u)" = 0 ] || fail "${packages[*]} are missing, and only root on" \
+        "Debian can unpack them here; install QEMU for Arm, the GNU binutils for arm-none-eabi," \
+        "and the target with: rustup target add $target"
     echo "fetching ${packages[*]}"
-    apt=(apt-get -qq -o "Dir::Cache::archives=$build/debs" -o "APT::Sandbox::User=root")
-    fetch=("${apt[@]}" install -y --download-only --no-install-recommends "${packages[@]}")
-    "${fetch[@]}" >/dev/null 2>&1 || { "${apt[@]}" update >/dev/null && "${fetch[@]}" >/dev/null; }
-    rm -rf "$root" && mkdir -p "$root"
-    for deb in "$build"/debs/*.deb; do dpkg -x "$deb" "$root"; done
-    rm -f "$build"/debs/*.deb
-    : >"${stamp// /+}"
-fi
+    mkdir -p "$new/lists/partial" "$new/cache/archives/partial" "$new/tools/bin"
+    apt-get -qq "${apt[@]}" update >/dev/null
 
-# A wrapper for each unpacked program, because its libraries are unpacked as well.
-libraries=$root/usr/lib/x86_64-linux-gnu:$root/lib/x86_64-linux-gnu:$root/usr/lib
-wrap() {
-    local name=$1 program=$root/usr/bin/$2
-    shift 2
-    printf '#!/bin/sh\nLD_LIBRARY_PATH=%q exec %q "$@" %s\n' "$libraries" "$program" "$*" >"$build/bin/$name"
-    chmod +x "$build/bin/$name"
-}
-for program in arm-none-eabi-nm arm-none-eabi-size arm-none-eabi-objdump; do
-    [ ! -x "$root/usr/bin/$program" ] || wrap $program $program
-done
-[ ! -x "$root/usr/bin/qemu-system-arm" ] || wrap qemu-system-arm qemu-system-arm -L "$root/usr/share/qemu"
+    local package version versioned=()
+    for package in "${packages[@]}"; do
+        version=$(apt-cache "${apt[@]}" policy "$package" | sed -n 's/^  Candidate: //p')
+        [ -n "$version" ] && [ "$version" != "(none)" ] || fail "the package index has no $package"
+        versioned+=("$package=$version")
+    done
+    check_rust "${versioned[@]}"
+    apt-get -qq "${apt[@]}" install -y --download-only --no-install-recommends "${versioned[@]}" >/dev/null
 
-compiler= flags=
-if ! has_target; then
+    local deb
+    for deb in "$new"/cache/archives/*.deb; do dpkg -x "$deb" "$new/tools"; done
     wrap cortex-rustc rustc
-    compiler=$build/bin/cortex-rustc
+    wrap qemu-system-arm qemu-system-arm -L '"$root/usr/share/qemu"'
+    for package in nm size objdump; do wrap arm-none-eabi-$package arm-none-eabi-$package; done
+    works "$new/tools" || fail "what was unpacked does not start"
+
+    # An epoch's colon would split LD_LIBRARY_PATH.
+    tools=$build/tools$(printf '+%s' "${versioned[@]/=*:/=}")
+    local old
+    for old in "$build"/tools+*; do mv "$old" "$new"; done
+    mv "$new/tools" "$tools"
+}
+
+# check_rust NAME=VERSION...: the compiler is new enough, and the sources are its own.
+check_rust() {
+    local package compiler= sources=
+    for package in "$@"; do
+        case $package in
+            rustc-web=*) compiler=${package#*=} ;;
+            rust-web-src=*) sources=${package#*=} ;;
+        esac
+    done
+    [ "$compiler" = "$sources" ] || fail "rustc-web is $compiler but rust-web-src is $sources"
+    [ -z "$compiler" ] || at_least "$rust_version" "$compiler" || fail "Cede needs Rust $rust_version," \
+        "the package index has rustc-web $compiler; with rustup: rustup target add $target"
+}
+
+# wrap NAME PROGRAM [OPTIONS]: a script that starts an unpacked program with the libraries beside it.
+wrap() {
+    local script=$new/tools/bin/$1 program=usr/bin/$2
+    shift 2
+    [ -x "$new/tools/$program" ] || return 0
+    cat >"$script" <<END
+#!/bin/sh
+root=\${0%/*}/..
+LD_LIBRARY_PATH=\$root/usr/lib/$libraries:\$root/lib/$libraries:\$root/usr/lib exec "\$root/$program" "\$@" $*
+END
+    chmod +x "$script"
+}
+
+# works FOLDER: its programs start, and its compiler, if it has one, is new enough and has its sources.
+works() {
+    local program compiler=$1/bin/cortex-rustc version
+    for program in "$1"/bin/*; do "$program" --version >/dev/null 2>&1 || return; done
+    [ -e "$compiler" ] || return 0
     version=$("$compiler" --version | cut -d' ' -f2)
-    sysroot=$build/sysroot-$version
-    lib=$sysroot/lib/rustlib/$target/lib
-    # Debian has no core for this target: it is built once, from the same version's sources.
-    if [ ! -e "$lib/done" ]; then
-        echo "building core $version for $target"
-        rm -rf "$sysroot" && mkdir -p "$lib"
-        library=$root/usr/src/rustc-$version/library
-        core() {
-            RUSTC_BOOTSTRAP=1 "$compiler" --edition=2024 --crate-type lib --target $target --sysroot "$sysroot" \
-                --out-dir "$lib" -C opt-level=3 -C codegen-units=1 -C panic=abort -C embed-bitcode=yes \
-                -Z force-unstable-if-unmarked --cap-lints allow "$@"
-        }
-        core --crate-name core "$library/core/src/lib.rs"
-        features=()
-        for feature in compiler-builtins default mem unstable-intrinsics; do
-            features+=(--cfg "feature=\"$feature\"")
-        done
-        core --crate-name compiler_builtins "${features[@]}" --cfg thumb --cfg f16_enabled --cfg f128_enabled \
-            --cfg intrinsics_enabled --cfg arch_enabled --cfg optimizations_enabled \
-            "$library/compiler-builtins/compiler-builtins/src/lib.rs"
-        : >"$lib/done"
-    fi
-    flags="--sysroot=$sysroot"
+    at_least "$rust_version" "$version" && [ -e "$1/usr/src/rustc-$version/library/core/src/lib.rs" ]
+}
+
+# unpacked: prints the folder of an earlier set-up that has all packages and works.
+unpacked() {
+    local folder package
+    for folder in "$build"/tools+*; do
+        for package in "${packages[@]}"; do [[ $folder+ == *+"$package"=* ]] || continue 2; done
+        ! works "$folder" || { echo "$folder" && return; }
+    done
+}
+
+# Debian has no core for this target: it is built once, from the same version's sources.
+build_core() {
+    local compiler=$tools/bin/cortex-rustc version library lib=$new/sysroot/lib/rustlib/$target/lib
+    version=$("$compiler" --version | cut -d' ' -f2)
+    library=$tools/usr/src/rustc-$version/library
+    echo "building core $version for $target"
+    mkdir -p "$lib"
+    core() {
+        RUSTC_BOOTSTRAP=1 "$compiler" --edition=2024 --crate-type lib --target $target --sysroot "$new/sysroot" \
+            --out-dir "$lib" -C opt-level=3 -C codegen-units=1 -C panic=abort -C embed-bitcode=yes \
+            -Z force-unstable-if-unmarked --cap-lints allow "$@"
+    }
+    core --crate-name core "$library/core/src/lib.rs"
+    local feature features=()
+    for feature in compiler-builtins default mem unstable-intrinsics; do
+        features+=(--cfg "feature=\"$feature\"")
+    done
+    core --crate-name compiler_builtins "${features[@]}" --cfg thumb --cfg f16_enabled --cfg f128_enabled \
+        --cfg intrinsics_enabled --cfg arch_enabled --cfg optimizations_enabled \
+        "$library/compiler-builtins/compiler-builtins/src/lib.rs"
+    compiles "$new/sysroot" || fail "the core that was built is of no use: $(cat "$new/log")"
+    rm -rf "$sysroot"
+    mv "$new/sysroot" "$sysroot"
+}
+
+# compiles SYSROOT: its core is whole. A static library takes in every object of core and compiler_builtins.
+compiles() {
+    [ -d "$1" ] || return
+    echo '#![no_std] #[panic_handler] fn panic(_: &core::panic::PanicInfo) -> ! { loop {} }' |
+        "$tools/bin/cortex-rustc" --crate-name probe --crate-type staticlib --target $target --sysroot "$1" \
+            -C panic=abort -o "$new/probe.a" - >"$new/log" 2>&1
+}
+
+tools= compiler= flags=
+if [ ${#packages[@]} -gt 0 ]; then
+    tools=$(unpacked)
+    [ -n "$tools" ] || fetch
+fi
+if ! has_target; then
+    compiler=$tools/bin/cortex-rustc
+    sysroot=$tools/sysroot
+    compiles "$sysroot" || build_core
+    flags=--sysroot=$sysroot
 fi
 
-cat >"$build/env" <<END
-export PATH=$(printf %q "$build/bin"):\$PATH
+cat >"$new/env" <<END
+export PATH=${tools:+$(printf %q "$tools/bin"):}\$PATH
 cortex_compiler=$(printf %q "$compiler")
 cortex_flags=$(printf %q "$flags")
 END
+mv "$new/env" "$build/env"

@@ -4,30 +4,12 @@
 //! `../shared/interaction` beside the repository), else on nothing.
 
 use cede_data::{Dataset, extract};
+use cede_tests::interaction;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
-use std::path::PathBuf;
-
-fn recordings() -> Option<PathBuf> {
-    let default = || {
-        PathBuf::from(concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/../../shared/interaction"
-        ))
-    };
-    let dir = std::env::var_os("CEDE_INTERACTION_DIR").map_or_else(default, PathBuf::from);
-    if dir.is_dir() {
-        return Some(dir);
-    }
-    println!(
-        "skipped: no recordings at {}; set CEDE_INTERACTION_DIR",
-        dir.display()
-    );
-    None
-}
 
 fn all_files(criterion: &mut Criterion) {
-    let Some(dir) = recordings() else { return };
+    let Some(dir) = interaction() else { return };
     let mut group = criterion.benchmark_group("all files of a site");
     group.sample_size(10);
     for site in ["EP0", "MA"] {

@@ -4,28 +4,10 @@ use cede_controller::ConflictKind;
 use cede_controller::kinematics::{State, advance, clamp_acceleration};
 use cede_data::lanelet::LineKind;
 use cede_data::{Dataset, Encounter, REST, Role, Split};
-use std::path::PathBuf;
-
-fn recordings() -> Option<PathBuf> {
-    let default = || {
-        PathBuf::from(concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/../../shared/interaction"
-        ))
-    };
-    let dir = std::env::var_os("CEDE_INTERACTION_DIR").map_or_else(default, PathBuf::from);
-    if dir.is_dir() {
-        return Some(dir);
-    }
-    println!(
-        "skipped: no recordings at {}; set CEDE_INTERACTION_DIR",
-        dir.display()
-    );
-    None
-}
+use cede_tests::interaction;
 
 fn load(site: &str) -> Option<Dataset> {
-    Some(Dataset::load(&recordings()?, site).unwrap_or_else(|error| panic!("{error}")))
+    Some(Dataset::load(&interaction()?, site).unwrap_or_else(|error| panic!("{error}")))
 }
 
 fn encounters_per_file(dataset: &Dataset) -> Vec<usize> {

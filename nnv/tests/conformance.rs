@@ -3,23 +3,10 @@
 
 use cede_nnv::{Answer, Branching, SearchOptions, verify};
 use cede_nnv_check::{Certificate, Network, Property, onnx, vnnlib};
+use cede_tests::conformance;
 use proptest::prelude::*;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
-
-fn folder(name: &str) -> Option<PathBuf> {
-    let given = std::env::var_os("CEDE_CONFORMANCE_DIR").map(PathBuf::from);
-    let usual = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/conformance");
-    let folder = given.unwrap_or(usual).join(name);
-    if folder.join("instances.csv").is_file() {
-        return Some(folder);
-    }
-    eprintln!(
-        "SKIPPED: no conformance material at {}; set CEDE_CONFORMANCE_DIR",
-        folder.display()
-    );
-    None
-}
 
 struct Instance {
     name: String,
@@ -79,7 +66,7 @@ fn agree(instances: &[Instance], checked: bool) {
 
 #[test]
 fn reinforcement_learning_benchmarks_agree_and_their_proofs_are_checked() {
-    if let Some(folder) = folder("rl_benchmarks") {
+    if let Some(folder) = conformance("rl_benchmarks") {
         agree(&instances(&folder, |_| true), true);
     }
 }
@@ -88,7 +75,7 @@ fn reinforcement_learning_benchmarks_agree_and_their_proofs_are_checked() {
 /// what matters is that an answer is never the wrong one.
 #[test]
 fn cutting_across_phases_alone_is_slow_at_times_but_never_wrong() {
-    let Some(folder) = folder("rl_benchmarks") else {
+    let Some(folder) = conformance("rl_benchmarks") else {
         return;
     };
     for instance in instances(&folder, |_| true) {
@@ -107,7 +94,7 @@ fn cutting_across_phases_alone_is_slow_at_times_but_never_wrong() {
 
 #[test]
 fn collision_avoidance_networks_agree() {
-    if let Some(folder) = folder("acasxu") {
+    if let Some(folder) = conformance("acasxu") {
         agree(&instances(&folder, |_| true), false);
     }
 }
@@ -117,7 +104,7 @@ fn collision_avoidance_networks_agree() {
 #[test]
 #[ignore = "minutes"]
 fn proofs_of_collision_avoidance_networks_are_checked() {
-    if let Some(folder) = folder("acasxu") {
+    if let Some(folder) = conformance("acasxu") {
         let easy = |line: &str| {
             line.contains("prop_3") || line.contains("prop_4") || line.contains("run2a_1_1_")
         };
@@ -125,16 +112,17 @@ fn proofs_of_collision_avoidance_networks_are_checked() {
     }
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(100))]
-
-    #[test]
-    fn damaged_real_files_are_read_or_refused(
-        damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
-    ) {
-        let Some(folder) = folder("rl_benchmarks") else { return Ok(()) };
-        let mut bytes = std::fs::read(folder.join("cartpole.onnx")).expect("the network");
-        let mut text = std::fs::read(folder.join("cartpole_case_safe_14.vnnlib")).expect("the property");
+#[test]
+fn damaged_real_files_are_read_or_refused() {
+    let Some(folder) = conformance("rl_benchmarks") else {
+        return;
+    };
+    let network = std::fs::read(folder.join("cartpole.onnx")).expect("the network");
+    let property =
+        std::fs::read(folder.join("cartpole_case_safe_14.vnnlib")).expect("the property");
+    let damage = prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6);
+    proptest!(ProptestConfig::with_cases(100), |(damage in damage)| {
+        let (mut bytes, mut text) = (network.clone(), property.clone());
         for (at, byte) in damage {
             // The structure is at both ends of the file; the middle is weights.
             let place = at.index(2000);
@@ -145,5 +133,5 @@ proptest! {
         }
         let _ = onnx::read(&bytes);
         let _ = vnnlib::read(&String::from_utf8_lossy(&text));
-    }
+    });
 }

@@ -5,7 +5,6 @@ use cede_controller::{Cause, Contract, Fault, Observation, Shield, Vehicle};
 use cede_data::{Dataset, Encounter};
 use cede_sim::driver::scene;
 use rayon::prelude::*;
-use std::path::PathBuf;
 
 /// Where the ego would like to be in terms of speed, in m/s.
 const CRUISE: f32 = 8.0;
@@ -56,20 +55,9 @@ fn delay(encounter: &Encounter, ego: usize) -> Option<u32> {
 /// Needs the INTERACTION recordings, whose licence keeps them out of the repository.
 #[test]
 fn nobody_waits_longer_than_it_takes_to_drive_off_once_the_human_has_gone() {
-    let default = || {
-        PathBuf::from(concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/../../shared/interaction"
-        ))
-    };
-    let dir = std::env::var_os("CEDE_INTERACTION_DIR").map_or_else(default, PathBuf::from);
-    if !dir.is_dir() {
-        println!(
-            "skipped: no recordings at {}; set CEDE_INTERACTION_DIR",
-            dir.display()
-        );
+    let Some(dir) = cede_tests::interaction() else {
         return;
-    }
+    };
     let data = Dataset::load(&dir, "EP0").unwrap();
     let delays: Vec<Option<u32>> = data
         .encounters

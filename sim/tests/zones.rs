@@ -11,7 +11,6 @@ use cede_data::{Dataset, SimRoute};
 use geo::{ConvexHull, Coord, Intersects, MultiPoint, Polygon};
 use proptest::prelude::*;
 use rayon::prelude::*;
-use std::path::PathBuf;
 
 const PAPER: Footprint = Footprint::PAPER;
 
@@ -206,20 +205,9 @@ fn a_zone_that_is_too_small_is_noticed() {
 /// Needs the INTERACTION recordings, whose licence keeps them out of the repository.
 #[test]
 fn zones_of_recorded_routes_are_at_most_half_a_metre_too_large() {
-    let default = || {
-        PathBuf::from(concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/../../shared/interaction"
-        ))
-    };
-    let dir = std::env::var_os("CEDE_INTERACTION_DIR").map_or_else(default, PathBuf::from);
-    if !dir.is_dir() {
-        println!(
-            "skipped: no recordings at {}; set CEDE_INTERACTION_DIR",
-            dir.display()
-        );
+    let Some(dir) = cede_tests::interaction() else {
         return;
-    }
+    };
     let data = Dataset::load(&dir, "EP0").unwrap();
     data.encounters.par_iter().for_each(|encounter| {
         let route = |i: usize| -> &SimRoute { &encounter.participants[i].route };

@@ -110,10 +110,7 @@ fn python() -> Option<PathBuf> {
 #[test]
 fn onnxruntime_gives_the_controllers_accelerations() {
     let Some(python) = python() else {
-        eprintln!(
-            "onnxruntime_gives_the_controllers_accelerations skips: no Python with onnxruntime and numpy; \
-             `python3 -m venv .build/python && .build/python/bin/pip install onnxruntime numpy`"
-        );
+        cede_tests::skip("onnxruntime (CEDE_PYTHON)");
         return;
     };
     let folder = tempfile::tempdir().unwrap();

@@ -30,9 +30,7 @@ fn row(dataset: &Dataset, baseline: Baseline, selection: Selection) -> Row {
 
 #[test]
 fn replay_is_the_record_on_the_train_split() {
-    let Some(folder) = interaction("replay_is_the_record_on_the_train_split") else {
-        return;
-    };
+    let Some(folder) = interaction() else { return };
     let dataset = Dataset::load(&folder, "EP0").unwrap();
     let row = row(&dataset, Baseline::Replay, "train".parse().unwrap());
     assert_eq!(row.n, 215);
@@ -43,10 +41,7 @@ fn replay_is_the_record_on_the_train_split() {
 
 #[test]
 fn the_initial_state_tells_who_goes_first_in_files_left_out() {
-    let name = "the_initial_state_tells_who_goes_first_in_files_left_out";
-    let Some(folder) = interaction(name) else {
-        return;
-    };
+    let Some(folder) = interaction() else { return };
     let dataset = Dataset::load(&folder, "EP0").unwrap();
     let selection = "leave-one-file-out".parse().unwrap();
     let row = row(&dataset, Baseline::Logistic, selection);

@@ -1,0 +1,12 @@
+#![no_main]
+//! Recordings in INTERACTION's format (CSV), and the search for encounters in those that are accepted.
+
+use cede_fuzz::with_file;
+use cede_data::Dataset;
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|bytes: &[u8]| {
+    with_file("vehicle_tracks_001.csv", bytes, |path| {
+        let _ = Dataset::load(path, "EP0");
+    });
+});

@@ -1,0 +1,12 @@
+#![no_main]
+//! Policies as ONNX graphs: what is imported is a weights file that the controller accepts.
+
+use cede_controller::Policy;
+use cede_exchange::onnx::{self, Told};
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|bytes: &[u8]| {
+    if let Ok(words) = onnx::read(bytes, Told::default()) {
+        Policy::new(&words).expect("an imported policy is accepted");
+    }
+});

@@ -1,0 +1,9 @@
+#![no_main]
+//! Properties of a policy (TOML).
+
+use cede_sim::property::Properties;
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|text: &str| {
+    let _ = Properties::read(text);
+});

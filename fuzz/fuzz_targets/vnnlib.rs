@@ -1,0 +1,9 @@
+#![no_main]
+//! Properties in VNN-LIB.
+
+use cede_verify::network::vnnlib;
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|text: &str| {
+    let _ = vnnlib::read(text);
+});
