@@ -51,7 +51,7 @@ impl<'w, const N: usize> Controller<'w, N> {
     /// A controller that has seen nothing yet; `part` is the one that a joint policy gives it.
     ///
     /// # Errors
-    /// The first number of `contract` that is out of its range. Never panics.
+    /// The first number of `contract` that is out of its range.
     pub fn new(policy: Policy<'w>, contract: Contract, part: Part) -> Result<Self, ContractError> {
         Ok(Self {
             policy,
@@ -63,8 +63,6 @@ impl<'w, const N: usize> Controller<'w, N> {
     }
 
     /// The shield.
-    ///
-    /// Cost: constant. Never panics.
     #[must_use]
     pub const fn shield(&self) -> &Shield<N> {
         &self.shield
@@ -72,8 +70,6 @@ impl<'w, const N: usize> Controller<'w, N> {
 
     /// Tells the policy of traffic that is not in the scene, for the decisions to come; the shield
     /// considers the scene alone.
-    ///
-    /// Cost: constant. Never panics.
     pub const fn set_traffic(&mut self, around: TrafficContext) {
         self.around = around;
     }
@@ -84,7 +80,7 @@ impl<'w, const N: usize> Controller<'w, N> {
     /// proposals passes to the shield, and the shield considers all others at once. With nobody left to
     /// meet, the ego accelerates gently up to the contract's speed. To be called once a period.
     ///
-    /// Cost: a pass through the network for each other, and the shield's. Never panics; the
+    /// Cost: a pass through the network for each other, and the shield's. The
     /// acceleration is finite and within the contract's, whatever the bits of the observation.
     pub fn decide(&mut self, scene: &Scene<N>, observation: &Observation<N>) -> Decision {
         // The shield finds a fault again and carries on with its plan.
@@ -111,7 +107,7 @@ impl<'w, const N: usize> Controller<'w, N> {
     ///
     /// To be called once a period instead of [`Controller::decide`]; 0 if the observation has a fault.
     ///
-    /// Cost: a pass through the network for each other. Never panics; finite and within ± 3.
+    /// Cost: a pass through the network for each other. Finite and within ± 3.
     pub fn proposal(&mut self, scene: &Scene<N>, observation: &Observation<N>) -> f32 {
         self.ask(scene, observation)
             .map_or(0.0, |(acceleration, _)| acceleration)

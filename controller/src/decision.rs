@@ -135,7 +135,6 @@ impl fmt::Display for Reason {
 impl Reason {
     /// The reason in words, with `other` for whom it is about: `the lorry may arrive in 1.3 s, …`.
     ///
-    /// Never panics.
     pub fn naming<'n>(&self, other: &'n str) -> impl fmt::Display + use<'n> {
         Named(*self, other)
     }

@@ -1,6 +1,7 @@
 //! Decides how a vehicle crosses an unsignalized intersection.
 //!
-//! `no_std`, no allocation, no `unsafe`, no panic, no recursion. SI units
+//! `no_std`, no allocation, no `unsafe`, no recursion. No function panics, whatever the bits of its
+//! arguments; where nothing else is said, its cost is constant. SI units
 //! throughout (m, s, rad, m/s, m/s²); headings counter-clockwise from +x; arc
 //! length `s` along a [`Route`]; a vehicle's reference point is the centre of
 //! its footprint.

@@ -77,7 +77,7 @@ impl core::error::Error for Fault {}
 impl<const N: usize> Observation<N> {
     /// The observation, with every number in its range, for a scene with `others` others.
     ///
-    /// Cost: O(N). Never panics, whatever the bits.
+    /// Cost: O(N).
     ///
     /// # Errors
     /// [`Fault::Ego`] or [`Fault::Other`], whichever is first.

@@ -5,13 +5,14 @@
 use cede_controller::policy::features::FeatureSet;
 use cede_controller::policy::mlp::Mlp;
 use cede_controller::policy::weights::{Draft, Perspective, Weights};
-use cede_exchange::onnx;
 use cede_data::Dataset;
 use cede_data::Encounter;
+use cede_formats::onnx;
+use cede_nnv::{Answer, SearchOptions};
+use cede_nnv_check::{Certificate, Network, vnnlib};
 use cede_train::run::checkpoint::Checkpoint;
 use cede_train::run::curve::Curve;
 use cede_train::run::{Algorithm, Lessons, Run};
-use cede_verify::network::{self, Answer, Certificate, Network, Settings};
 use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
@@ -21,11 +22,11 @@ type Result<T> = std::result::Result<T, Box<dyn Error>>;
 fn main() -> Result<()> {
     let words = policy()?;
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
-    let graph = onnx::write(&Weights::parse(&words)?);
+    let graph = onnx::export(&Weights::parse(&words)?);
     write("weights/narrow.cede", &bytes)?;
     write("policy_onnx/narrow.onnx", &graph)?;
     write("network_onnx/narrow.onnx", &graph)?;
-    let network = network::onnx::read(&graph)?;
+    let network = cede_nnv_check::onnx::read(&graph)?;
     let property = property(&network)?;
     write("vnnlib/narrow.vnnlib", property.as_bytes())?;
     write(
@@ -83,11 +84,8 @@ fn property(network: &Network) -> Result<String> {
 
 /// The proof of `property`.
 fn certificate(network: &Network, property: &str) -> Result<String> {
-    let settings = Settings {
-        record: true,
-        ..Settings::default()
-    };
-    let report = network::verify(network, &network::vnnlib::read(property)?, settings)?;
+    let options = SearchOptions::default().record(true);
+    let report = cede_nnv::verify(network, &vnnlib::read(property)?, options)?;
     if report.answer != Answer::Unsat {
         return Err("the property does not hold".into());
     }

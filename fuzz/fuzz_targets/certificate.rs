@@ -1,7 +1,7 @@
 #![no_main]
 //! Certificates: what is read is written as a text that can be read, and can be checked.
 
-use cede_verify::network::{Certificate, Network, Property, onnx, vnnlib};
+use cede_nnv_check::{Certificate, Network, Property, onnx, vnnlib};
 use libfuzzer_sys::fuzz_target;
 use std::sync::LazyLock;
 

@@ -1,7 +1,7 @@
 #![no_main]
 //! Networks for the verifier as ONNX graphs: what is read can be run.
 
-use cede_verify::network::onnx;
+use cede_nnv_check::onnx;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

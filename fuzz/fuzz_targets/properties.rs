@@ -1,7 +1,7 @@
 #![no_main]
 //! Properties of a policy (TOML).
 
-use cede_sim::property::Properties;
+use cede_formats::property::Properties;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {

@@ -1,8 +1,8 @@
 #![no_main]
 //! Scene descriptions (TOML).
 
-use cede_fuzz::with_file;
 use cede_data::Site;
+use cede_fuzz::with_file;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -1,8 +1,8 @@
 #![no_main]
 //! Recordings of any source (CSV), and the search for encounters in those that are accepted.
 
-use cede_fuzz::with_file;
 use cede_data::Dataset;
+use cede_fuzz::with_file;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -1,7 +1,7 @@
 #![no_main]
 //! Properties in VNN-LIB.
 
-use cede_verify::network::vnnlib;
+use cede_nnv_check::vnnlib;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {

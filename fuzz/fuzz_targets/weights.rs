@@ -1,7 +1,8 @@
 #![no_main]
 //! Weights files (.cede), also past their checksum.
 
-use cede_controller::{Policy, weights};
+use cede_controller::Policy;
+use cede_controller::policy::weights;
 use cede_fuzz::with_checksum;
 use libfuzzer_sys::fuzz_target;
 

@@ -45,7 +45,7 @@ impl<const P: usize> Route<P> {
 
     /// A route through `points`, in order.
     ///
-    /// Cost: O(points). Never panics.
+    /// Cost: O(points).
     ///
     /// # Errors
     /// See [`RouteError`].
@@ -85,24 +85,18 @@ impl<const P: usize> Route<P> {
     }
 
     /// Length in metres; always positive.
-    ///
-    /// Cost: constant. Never panics.
     #[must_use]
     pub fn length(&self) -> f32 {
         self.arc.last().copied().unwrap_or(0.0)
     }
 
     /// The points of the polyline, at least two.
-    ///
-    /// Cost: constant. Never panics.
     #[must_use]
     pub fn points(&self) -> &[Point] {
         &self.points
     }
 
     /// The arc length (m) at each of [`Route::points`].
-    ///
-    /// Cost: constant. Never panics.
     #[must_use]
     pub fn arc(&self) -> &[f32] {
         &self.arc
@@ -110,7 +104,7 @@ impl<const P: usize> Route<P> {
 
     /// The pose at arc length `s` (m), straight on beyond both ends.
     ///
-    /// Cost: O(log points). Never panics.
+    /// Cost: O(log points).
     #[must_use]
     pub fn pose(&self, s: f32) -> Pose {
         let after = self.arc.partition_point(|&a| a <= s);
@@ -138,7 +132,7 @@ impl<const P: usize> Route<P> {
 
     /// Arc length (m) of the point of the polyline nearest to `point`, in [0, length].
     ///
-    /// Cost: O(points). Never panics.
+    /// Cost: O(points).
     #[must_use]
     pub fn project(&self, point: Point) -> f32 {
         let mut best = (f32::INFINITY, 0.0);

@@ -64,8 +64,6 @@ pub struct RouteConflict {
 
 impl RouteConflict {
     /// Where the footprints can touch; at most [`crate::junction::zone::MAX_ZONES`], in no particular order.
-    ///
-    /// Cost: constant. Never panics.
     pub fn zones(&self) -> impl Iterator<Item = &Zone> {
         self.zones.iter().flatten()
     }
@@ -105,7 +103,7 @@ impl<const N: usize> Scene<N> {
     /// The scene of `ego` among `others`; an observation counts them in this order.
     ///
     /// Cost: for each other, a distance for each pair of segments, more where the routes are
-    /// near each other: about 1 ms on a desktop for 8 others of 128 points. Never panics.
+    /// near each other: about 1 ms on a desktop for 8 others of 128 points.
     ///
     /// # Errors
     /// See [`SceneError`].
@@ -127,7 +125,7 @@ impl<const N: usize> Scene<N> {
     /// to hold all of them at once: each is dropped before the next one is asked for.
     ///
     /// # Errors
-    /// See [`SceneError`]. Never panics.
+    /// See [`SceneError`].
     // Not inlined, so that it fills the caller's scene and no copy of it.
     #[inline(never)]
     pub fn gather<const P: usize>(
@@ -168,8 +166,6 @@ impl<const N: usize> Scene<N> {
     }
 
     /// How the ego's route meets each other's.
-    ///
-    /// Cost: constant. Never panics.
     #[must_use]
     pub fn conflicts(&self) -> &[RouteConflict] {
         &self.conflicts
@@ -181,24 +177,18 @@ impl<const N: usize> Scene<N> {
     }
 
     /// The ego's footprint.
-    ///
-    /// Cost: constant. Never panics.
     #[must_use]
     pub const fn footprint(&self) -> Footprint {
         self.footprint
     }
 
     /// Unit vector in which the ego's route ends.
-    ///
-    /// Cost: constant. Never panics.
     #[must_use]
     pub const fn exit(&self) -> Point {
         self.exit
     }
 
     /// Says who goes first if the ego and other number `other` arrive at once; no effect if there is none.
-    ///
-    /// Cost: constant. Never panics.
     pub fn set_right_of_way(&mut self, other: usize, right_of_way: RightOfWay) {
         if let Some(conflict) = self.conflicts.get_mut(other) {
             conflict.right_of_way = right_of_way;

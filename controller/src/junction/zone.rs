@@ -66,8 +66,6 @@ impl Span {
     }
 
     /// Whether `value` is in the interval, ends included.
-    ///
-    /// Cost: constant. Never panics.
     #[must_use]
     pub fn contains(self, value: f32) -> bool {
         self.from <= value && value <= self.to
@@ -95,8 +93,6 @@ pub struct Zone {
 
 impl Zone {
     /// The same zone as the other vehicle sees it.
-    ///
-    /// Cost: constant. Never panics.
     #[must_use]
     pub fn swapped(&self) -> Self {
         Self {
@@ -111,8 +107,6 @@ impl Zone {
     }
 
     /// Whether both vehicles run along one lane in it.
-    ///
-    /// Cost: constant. Never panics.
     #[must_use]
     pub fn is_lane(&self) -> bool {
         matches!(self.kind, ConflictKind::Merging | ConflictKind::Following)
@@ -176,7 +170,7 @@ pub(crate) type Zones = [Option<Zone>; MAX_ZONES];
 /// The zones of two routes.
 ///
 /// Cost: one distance for each pair of segments, and a polygon of at most 12 corners for
-/// each that is near. Never panics.
+/// each that is near.
 pub(crate) fn zones<const P: usize>(
     (ego, ego_footprint): (&Route<P>, Footprint),
     (other, other_footprint): (&Route<P>, Footprint),

@@ -3,8 +3,6 @@
 //! `assets/embedded.txt` says how it was made and by which command it is made again.
 
 /// The words of its weights file, for [`Policy::new`](crate::Policy::new).
-///
-/// Cost: constant. Never panics.
 #[must_use]
 pub fn words() -> &'static [u32] {
     crate::include_weights!("../../assets/embedded.cede")

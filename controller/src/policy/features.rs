@@ -92,8 +92,6 @@ impl FeatureSet {
     pub const ALL: [Self; 4] = [Self::Raw, Self::Route, Self::Traffic, Self::Scene];
 
     /// Number of features, at most [`MAX_FEATURES`].
-    ///
-    /// Cost: constant. Never panics.
     #[must_use]
     pub const fn count(self) -> usize {
         match self {
@@ -105,8 +103,6 @@ impl FeatureSet {
     }
 
     /// Name on the command line.
-    ///
-    /// Cost: constant. Never panics.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

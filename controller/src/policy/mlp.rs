@@ -55,8 +55,6 @@ impl<'a> Mlp<'a> {
 
     /// A network over `words` (bit patterns of `f32`), or `None` if their number does not fit the shape,
     /// if `width` is not a multiple of [`LANES`] up to [`MAX_WIDTH`], or if there are no inputs or more than that.
-    ///
-    /// Cost: constant. Never panics.
     #[must_use]
     pub fn new(words: &'a [u32], inputs: usize, width: usize) -> Option<Self> {
         let shape_fits = (LANES..=MAX_WIDTH).contains(&width)
@@ -94,16 +92,12 @@ impl<'a> Mlp<'a> {
     }
 
     /// Width of the hidden layers.
-    ///
-    /// Cost: constant. Never panics.
     #[must_use]
     pub const fn width(&self) -> usize {
         self.output.inputs
     }
 
     /// The four layers, from the inputs to the outputs; ReLU follows all but the last.
-    ///
-    /// Cost: constant. Never panics.
     #[must_use]
     pub const fn layers(&self) -> [Dense<'a>; 4] {
         let [first, second, third] = self.hidden;
@@ -113,7 +107,7 @@ impl<'a> Mlp<'a> {
     /// The outputs for `inputs`; inputs that are missing count as zero, surplus ones are ignored.
     ///
     /// Cost: `Mlp::words` multiplications and additions, the same instructions for every input.
-    /// Never panics; finite if inputs and weights are within the limits that `weights` enforces.
+    /// finite if inputs and weights are within the limits that `weights` enforces.
     #[must_use]
     pub fn forward(&self, inputs: &[f32]) -> [f32; OUTPUTS] {
         // The stack of a small network is half that of a wide one.
@@ -139,14 +133,14 @@ impl<'a> Mlp<'a> {
 impl<'a> Dense<'a> {
     /// The bias of each neuron.
     ///
-    /// Cost: O(neurons) to go through. Never panics.
+    /// Cost: O(neurons) to go through.
     pub fn biases(&self) -> impl ExactSizeIterator<Item = f32> + use<'a> {
         self.parameters(0..self.neurons)
     }
 
     /// The weights, input by input: those of input 0 for each neuron, then those of input 1, …
     ///
-    /// Cost: O(weights) to go through. Never panics.
+    /// Cost: O(weights) to go through.
     pub fn weights(&self) -> impl ExactSizeIterator<Item = f32> + use<'a> {
         self.parameters(self.neurons..self.words.len())
     }

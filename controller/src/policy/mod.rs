@@ -30,7 +30,7 @@ pub struct Policy<'a> {
 impl<'a> Policy<'a> {
     /// The policy of a weights file, whose words it borrows.
     ///
-    /// Cost: O(words). Never panics.
+    /// Cost: O(words).
     ///
     /// # Errors
     /// See [`Weights::parse`].
@@ -39,8 +39,6 @@ impl<'a> Policy<'a> {
     }
 
     /// The weights file.
-    ///
-    /// Cost: constant. Never panics.
     #[must_use]
     pub const fn weights(&self) -> &Weights<'a> {
         &self.weights
@@ -48,7 +46,7 @@ impl<'a> Policy<'a> {
 
     /// What the policy proposes for the ego, and what it expects of the other, in m/s² within ± 3.
     ///
-    /// Cost: the features, one pass through the network, two `tanh`. Never panics; finite and within
+    /// Cost: the features, one pass through the network, two `tanh`. Finite and within
     /// ± 3 for any `pair` whatsoever.
     #[must_use]
     pub fn act(&self, pair: &Pair) -> [f32; 2] {
@@ -66,7 +64,7 @@ impl<'a> Policy<'a> {
     /// The network's inputs for `pair`: the normalised features, each within ± [`LIMIT`], then zeros. Those of
     /// a [`Perspective::Joint`] policy are the left-turner's, whoever the ego is.
     ///
-    /// Cost: the features. Never panics; finite and within ± [`LIMIT`] for any `pair` whatsoever.
+    /// Cost: the features. Finite and within ± [`LIMIT`] for any `pair` whatsoever.
     // Not inlined, because its stack is free again when the network needs its own.
     #[must_use]
     #[inline(never)]

@@ -84,8 +84,6 @@ pub struct Pair<R = f32> {
 
 impl Pair {
     /// The same pair as the other vehicle sees it. Its own inverse, but for the rounding of the SVO.
-    ///
-    /// Cost: constant. Never panics.
     #[must_use]
     pub fn swapped(&self) -> Self {
         Self {

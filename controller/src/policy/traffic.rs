@@ -27,7 +27,7 @@ pub struct NearbyVehicle<'m> {
 impl TrafficContext {
     /// What the vehicles `around` are to an ego at arc length `ego` (m).
     ///
-    /// Cost: O(vehicles). Never panics.
+    /// Cost: O(vehicles).
     #[must_use]
     pub fn new<'m>(ego: f32, around: impl IntoIterator<Item = NearbyVehicle<'m>>) -> Self {
         let mut nearest = Self::default();
@@ -43,8 +43,6 @@ impl TrafficContext {
     }
 
     /// The nearer of the two leaders and of the two crossers.
-    ///
-    /// Cost: constant. Never panics.
     #[must_use]
     pub fn nearest(self, other: Self) -> Self {
         let leader = match (self.leader, other.leader) {

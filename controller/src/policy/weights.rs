@@ -99,7 +99,7 @@ impl core::error::Error for WeightsError {}
 impl<'a> Weights<'a> {
     /// Checks `words` and borrows from them.
     ///
-    /// Cost: O(words), most of it the checksum. Never panics.
+    /// Cost: O(words), most of it the checksum.
     ///
     /// # Errors
     /// See [`WeightsError`]; a single flipped bit anywhere is always found.
@@ -134,8 +134,6 @@ impl<'a> Weights<'a> {
     }
 
     /// SHA-256 of what the network was made from.
-    ///
-    /// Cost: constant. Never panics.
     #[must_use]
     pub fn provenance(&self) -> [u8; 32] {
         let mut bytes = [0; 32];
@@ -147,7 +145,7 @@ impl<'a> Weights<'a> {
 
     /// Centre and scale of each feature: the network sees (feature − centre) · scale.
     ///
-    /// Cost: O(features) to go through. Never panics.
+    /// Cost: O(features) to go through.
     pub fn normalisation(&self) -> impl Iterator<Item = (f32, f32)> + use<'a> {
         let float = |&word: &u32| f32::from_bits(word);
         self.centres
@@ -186,7 +184,6 @@ impl Draft<'_> {
 
     /// Writes the file to the first [`Draft::words`] places of `out` and reads it back.
     ///
-    /// Never panics.
     ///
     /// # Errors
     /// [`WeightsError::NoRoom`] if `out` is too short, [`WeightsError::Shape`] and

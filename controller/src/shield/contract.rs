@@ -227,7 +227,7 @@ impl Contract {
     /// The contract, if every number is in its range.
     ///
     /// # Errors
-    /// The first that is not. Never panics.
+    /// The first that is not.
     pub fn checked(self) -> Result<Self, ContractError> {
         Range::above(0.0, 1.0).check("period", self.period)?;
         let late = ": a command takes effect before the next one";

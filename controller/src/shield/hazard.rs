@@ -65,7 +65,7 @@ impl Hazards {
     /// Adds the hazards of what is seen, but for those that the rule of precedence takes away. In place,
     /// because they are the largest thing on the stack.
     ///
-    /// Cost: O(zones²) for the sorting, at most 24². Never panics.
+    /// Cost: O(zones²) for the sorting, at most 24².
     pub(crate) fn add<const N: usize, R: Rules>(
         &mut self,
         contract: &Contract,

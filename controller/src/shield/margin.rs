@@ -20,8 +20,6 @@ pub struct Departure<R> {
 
 /// The speed (m/s) up to which the ego certainly does what is commanded: its limiter, too, errs by the
 /// speed error at most.
-///
-/// Cost: constant. Never panics.
 pub fn unlimited<R: Real>(contract: &Contract) -> R {
     let speed = R::of(contract.ego.max_speed) - R::of(contract.speed_error);
     // A contract whose error exceeds its speed limit says nothing about how fast the ego gets.
@@ -30,8 +28,6 @@ pub fn unlimited<R: Real>(contract: &Contract) -> R {
 
 /// Bounds on the ego after `command` (m/s²) for one period, given now at `speed` (m/s, as sensed) while
 /// one between the two `previous` (m/s²) is still in effect for at most the latency.
-///
-/// Cost: constant. Never panics.
 pub fn departure<R: Real>(
     contract: &Contract,
     speed: R,
@@ -57,8 +53,6 @@ pub fn departure<R: Real>(
 
 /// The time (s) from now at which the ego has certainly gone `target` metres, if it goes from
 /// `least` on, and the least speed (m/s) that it then has.
-///
-/// Cost: constant. Never panics.
 pub fn clearing<R: Real>(contract: &Contract, least: Reach<R>, target: R) -> (R, R) {
     let (time, speed) = least.until(target, R::of(contract.ego.go), unlimited(contract));
     (
@@ -69,8 +63,6 @@ pub fn clearing<R: Real>(contract: &Contract, least: Reach<R>, target: R) -> (R,
 
 /// The least number of going periods after the first one with which the ego has gone for long enough
 /// at `clears` (s from now) even if the last command takes effect at once and the first one late.
-///
-/// Cost: constant. Never panics.
 #[must_use]
 pub fn periods(contract: &Contract, clears: f32) -> u16 {
     let count = (clears - contract.period) / contract.period;
@@ -84,23 +76,17 @@ pub fn periods(contract: &Contract, clears: f32) -> u16 {
 }
 
 /// The distance (m) from here at which the ego is at rest at the latest, if it goes for `time` more and then brakes.
-///
-/// Cost: constant. Never panics.
 pub fn rest<R: Real>(contract: &Contract, most: Reach<R>, time: R) -> R {
     most.at_most(R::of(contract.ego.go), time)
         .rest(R::of(contract.ego.braking))
 }
 
 /// Metres to spare if the ego is at rest after at most `rest` metres and must not go beyond `limit`.
-///
-/// Cost: constant. Never panics.
 pub fn stops_short<R: Real>(contract: &Contract, limit: R, rest: R) -> R {
     limit - rest - R::of(contract.slack)
 }
 
 /// The farthest that an other at `speed` (m/s, at most) gets in `time` (s).
-///
-/// Cost: constant. Never panics.
 pub fn rush<R: Real>(contract: &Contract, speed: R, time: R) -> Reach<R> {
     Reach::start(speed).rushing(
         R::of(contract.other.acceleration),
@@ -111,16 +97,12 @@ pub fn rush<R: Real>(contract: &Contract, speed: R, time: R) -> Reach<R> {
 
 /// Metres that are left between an other and its zone, `distance` ahead of it, after its `rush`
 /// until the ego has cleared its own zone.
-///
-/// Cost: constant. Never panics.
 pub fn clears_before<R: Real>(contract: &Contract, distance: R, rush: Reach<R>) -> R {
     distance - rush.distance - R::of(contract.slack)
 }
 
 /// The gap (m) that an other at `speed` needs to stop behind an ego at `ego_speed`, however hard it
 /// accelerates before it reacts, and however hard the ego brakes within its means.
-///
-/// Cost: constant. Never panics.
 pub fn safe_gap<R: Real>(contract: &Contract, speed: R, ego_speed: R) -> R {
     let follower = contract.follower;
     let stopped = rush(contract, speed, R::of(follower.reaction)).rest(R::of(follower.braking));
@@ -131,22 +113,16 @@ pub fn safe_gap<R: Real>(contract: &Contract, speed: R, ego_speed: R) -> R {
 
 /// Metres to spare beyond the gap that the other needs, when the ego enters a lane `gap` ahead of where
 /// the other is now, and the other comes nearer by its `rush` until then.
-///
-/// Cost: constant. Never panics.
 pub fn enters_ahead<R: Real>(contract: &Contract, gap: R, rush: Reach<R>, needed: R) -> R {
     gap - rush.distance - needed - R::of(contract.slack)
 }
 
 /// Where an other at `speed` (m/s, at least) is at rest at the earliest, in metres from where it is.
-///
-/// Cost: constant. Never panics.
 pub fn earliest_rest<R: Real>(contract: &Contract, speed: R) -> R {
     Reach::start(speed).rest(R::of(contract.other.braking))
 }
 
 /// The earliest time (s) at which an other at `speed` (m/s, at most) has gone `distance` (m).
-///
-/// Cost: constant. Never panics.
 pub fn arrival<R: Real>(contract: &Contract, distance: R, speed: R) -> R {
     let (acceleration, cap) = (contract.other.acceleration, contract.other.max_speed);
     let (time, _) = Reach::start(speed).until(distance, R::of(acceleration), R::of(cap));

@@ -52,7 +52,7 @@ impl<const N: usize> Shield<N> {
     /// A shield that has seen nothing yet.
     ///
     /// # Errors
-    /// The first number of `contract` that is out of its range. Never panics.
+    /// The first number of `contract` that is out of its range.
     pub fn new(contract: Contract) -> Result<Self, ContractError> {
         Self::with_rules(contract)
     }
@@ -62,7 +62,7 @@ impl<const N: usize, R: Rules> Shield<N, R> {
     /// A shield with rules of its own, which are not proved: see [`Rules`].
     ///
     /// # Errors
-    /// The first number of `contract` that is out of its range. Never panics.
+    /// The first number of `contract` that is out of its range.
     pub fn with_rules(contract: Contract) -> Result<Self, ContractError> {
         Ok(Self {
             contract: contract.checked()?,
@@ -88,7 +88,7 @@ impl<const N: usize, R: Rules> Shield<N, R> {
     ///
     /// To be called once a period, with one and the same `scene`.
     ///
-    /// Cost: at most 14 candidates × one clearing time for each zone. Never panics; the acceleration is
+    /// Cost: at most 14 candidates × one clearing time for each zone. the acceleration is
     /// finite and within the contract's, whatever the bits of the observation and the proposal.
     // Not inlined, so that its stack is not on top of the policy's.
     #[inline(never)]

@@ -11,8 +11,6 @@ pub struct Plan {
 
 impl Plan {
     /// What is left of the plan after one period.
-    ///
-    /// Cost: constant. Never panics.
     #[must_use]
     pub const fn tail(self) -> Self {
         Self {

@@ -16,8 +16,6 @@ pub struct Reach<R> {
 
 impl<R: Real> Reach<R> {
     /// Nowhere yet, at `speed`.
-    ///
-    /// Cost: constant. Never panics.
     pub fn start(speed: R) -> Self {
         let (distance, zero) = (R::of(0.0), R::of(0.0));
         Self {
@@ -29,8 +27,6 @@ impl<R: Real> Reach<R> {
     /// At most as far and as fast as this after `time` more at `acceleration`, of either sign.
     ///
     /// Exact, but for a vehicle that comes to rest on the way: that one stops no later.
-    ///
-    /// Cost: constant. Never panics.
     #[must_use]
     pub fn at_most(self, acceleration: R, time: R) -> Self {
         let speed = (self.speed + acceleration * time).max(R::of(0.0));
@@ -44,8 +40,6 @@ impl<R: Real> Reach<R> {
     /// that is perhaps not accelerated beyond the speed `cap`; one that is faster already keeps its speed.
     ///
     /// Exact, but for a vehicle that reaches the cap or comes to rest on the way: that one gets no less far.
-    ///
-    /// Cost: constant. Never panics.
     #[must_use]
     pub fn at_least(self, acceleration: R, cap: R, time: R) -> Self {
         let speed = (self.speed + acceleration * time).min(cap.max(self.speed));
@@ -58,8 +52,6 @@ impl<R: Real> Reach<R> {
 
     /// After `time` more at `acceleration` > 0 up to the speed `cap`, which is then kept;
     /// a vehicle that is faster already keeps its speed.
-    ///
-    /// Cost: constant. Never panics.
     #[must_use]
     pub fn rushing(self, acceleration: R, cap: R, time: R) -> Self {
         let cap = cap.max(self.speed);
@@ -75,8 +67,6 @@ impl<R: Real> Reach<R> {
     }
 
     /// Where a vehicle that brakes at `braking` > 0 from here comes to rest.
-    ///
-    /// Cost: constant. Never panics.
     #[must_use]
     pub fn rest(self, braking: R) -> R {
         self.distance + self.speed * self.speed / (braking + braking)
@@ -84,8 +74,6 @@ impl<R: Real> Reach<R> {
 
     /// The time (s) that it takes from here at `acceleration` > 0, up to the speed `cap` > 0, until the
     /// distance is `target`, and the speed then. No time if it is there already.
-    ///
-    /// Cost: constant. Never panics.
     #[must_use]
     pub fn until(self, target: R, acceleration: R, cap: R) -> (R, R) {
         let left = (target - self.distance).max(R::of(0.0));

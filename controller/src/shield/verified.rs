@@ -22,7 +22,7 @@ pub(crate) struct Verified {
 /// The best plan after one period at a given acceleration: stop before every hazard, or go until the
 /// first k are cleared and stop before all others, for every k.
 ///
-/// Cost: one clearing time for each hazard. Never panics.
+/// Cost: one clearing time for each hazard.
 pub(crate) fn best<R: Rules>(
     contract: &Contract,
     hazards: &Hazards,
