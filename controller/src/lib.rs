@@ -86,5 +86,6 @@ pub use policy::{
     Crosser, FeatureSet, Leader, Mlp, NearbyVehicle, Pair, Part, Perspective, Policy, RightOfWay,
     TrafficContext, VehicleState, Weights, WeightsError,
 };
-pub use real::Real;
+pub use real::{Elementary, Real};
+pub use separation::OrientedBox;
 pub use shield::{Contract, ContractError, Plan, Shield};
