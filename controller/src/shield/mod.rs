@@ -3,7 +3,7 @@
 //! A proposed acceleration is accepted if, after one period of it, some fail-safe [`Plan`] is
 //! verified against everything that the others can do from now. Otherwise the nearest accepted
 //! acceleration of a fixed grid is taken; otherwise the next command of the plan that was verified last;
-//! and if there is none, the ego brakes and says so. `docs/shield.md` has the theorem.
+//! and if there is none, the ego brakes and says so. `docs/theorem.md` has the theorem.
 
 pub mod choice;
 pub mod contract;
