@@ -179,7 +179,7 @@ fn vehicle_state(
     }
 }
 
-/// Whether the two have yet to meet: in some zone neither has done with it. One that is ahead in a
+/// Whether the two have yet to meet: in some zone neither has passed it. One that is ahead in a
 /// lane that they share from the start has been met once either has entered that lane: it leads.
 fn ahead(conflict: &RouteConflict, ego: &Vehicle, other: &Vehicle) -> bool {
     conflict.zones().any(|zone| {

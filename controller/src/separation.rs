@@ -41,7 +41,7 @@ impl OrientedBox {
     #[inline]
     pub fn overlaps(&self, other: &Self) -> bool {
         let [a, b, c, d] = self.separations(other);
-        // Without short circuits: four comparisons cost less than one branch taken by surprise.
+        // Without short circuits: four comparisons cost less than one mispredicted branch.
         (a <= 0.0) & (b <= 0.0) & (c <= 0.0) & (d <= 0.0)
     }
 }

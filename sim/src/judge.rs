@@ -1,6 +1,6 @@
 //! The judge of collisions: a rapier2d world that holds every vehicle as a cuboid.
 //!
-//! The simulator's own box test ([`cede_controller::separation`]) is fast; this one is somebody else's, and
+//! The simulator's own box test ([`cede_controller::separation`]) is fast; this one is an independent implementation, and
 //! slow (a microsecond or two a step). Safety is counted by the judge, and the fast
 //! test is held to agree with it (`sim/tests/agreement.rs`).
 

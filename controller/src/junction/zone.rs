@@ -5,7 +5,7 @@
 //! without turning, so the separating-axis test of the two rectangles is linear
 //! in s and t: the occupied set is the segments' rectangle in the (s, t) plane cut
 //! by eight half-planes, a convex polygon, computed exactly. A [`Zone`] bounds
-//! the polygons that hang together by an interval of s, one of t and one of s − t.
+//! each connected set of polygons by an interval of s, one of t and one of s − t.
 //!
 //! Nothing is sampled, so nothing is missed between samples. Footprints are
 //! inflated by [`INFLATION`] on every side: that covers rounding and the corners'
@@ -186,7 +186,7 @@ pub(crate) fn zones<const P: usize>(
     patches.map(|patch| patch.map(|patch| patch.zone()))
 }
 
-/// Adds a patch, or widens those that it touches: what hangs together ends up in one.
+/// Adds a patch, or widens those that it touches: connected patches end up in one.
 fn insert(patches: &mut [Option<Patch>; MAX_ZONES], mut patch: Patch) {
     let touched = |patches: &mut [Option<Patch>], patch: &Patch| {
         patches

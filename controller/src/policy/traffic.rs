@@ -69,7 +69,7 @@ impl NearbyVehicle<'_> {
         })
     }
 
-    /// In some zone where the two cross or merge, neither has done with it.
+    /// In some zone where the two cross or merge, neither has passed it.
     fn crosses(&self, ego: f32) -> Option<Crosser> {
         let meets = |kind| matches!(kind, ConflictKind::Crossing | ConflictKind::Merging);
         let ahead = self

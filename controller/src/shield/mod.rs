@@ -33,7 +33,7 @@ use memory::Memory;
 use precedence::{Claims, Precedences};
 use verified::{Verified, best, passage_margin};
 
-/// An ego without a safe plan that is less than this (m) in a zone had better stay there.
+/// An ego without a safe plan that is less than this (m) in a zone stays there.
 const NOSE: f32 = 0.5;
 
 /// The shield of one vehicle among up to `N` others; it remembers, so there is one for each.
@@ -269,7 +269,7 @@ fn check<R: Rules>(
     best::<R>(contract, hazards, &departure)
 }
 
-/// Whether the ego, which has no safe plan, had better leave than brake: it stands in zones, and none
+/// Whether an ego without a safe plan accelerates out of its zones instead of braking: it stands in zones, and none
 /// of the others is in its own.
 fn leaves(hazards: &Hazards) -> bool {
     let mut inside = hazards.iter().filter(|h| h.limit < -NOSE).peekable();

@@ -166,7 +166,7 @@ impl PairMemory {
         }
     }
 
-    /// Whoever stands in a zone while both rest has precedence there until it has left: whosesoever turn it is, the other
+    /// Whoever stands in a zone while both rest has precedence there until it has left: whoever has the turn, the other
     /// sees it stand there, and has no plan left that counts on the zone.
     fn hold<R: Rules>(&mut self, contract: &Contract, conflict: &RouteConflict, ego: &Vehicle) {
         let periods = R::grace(contract);

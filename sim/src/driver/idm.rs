@@ -53,7 +53,7 @@ struct AtStopSign {
     waited: u32,
     /// The same of the rival.
     rival_waited: u32,
-    /// Whether it has done with the stop sign.
+    /// Whether it has stopped at the stop sign.
     released: bool,
 }
 

@@ -1,4 +1,4 @@
-//! A quick judgement in the paper's protocol, for learning curves; `cede_sim` has the last word.
+//! A quick judgement in the paper's protocol, for learning curves.
 
 use crate::driving::episodes::Course;
 use crate::driving::policy_view::PolicyView;

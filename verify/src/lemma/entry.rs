@@ -47,7 +47,7 @@ pub(super) fn lemmas() -> Vec<Lemma> {
     ]
 }
 
-/// The numbers of a contract in which others are no lamer than the ego.
+/// The numbers of a contract in which others accelerate, brake and drive at least as hard and fast as the ego.
 struct Numbers {
     contract: Contract,
     a: Term,
@@ -74,7 +74,7 @@ fn numbers() -> Numbers {
 }
 
 impl Numbers {
-    fn no_lamer(&self, lame: bool) -> Formula {
+    fn at_least_as_capable(&self, weaker: bool) -> Formula {
         let Self {
             a,
             other_a,
@@ -83,7 +83,7 @@ impl Numbers {
             other_most,
             ..
         } = *self;
-        let order = if lame { all([]) } else { a.at_most(other_a) };
+        let order = if weaker { all([]) } else { a.at_most(other_a) };
         all([order, a.at_most(hardest), most.at_most(other_most)])
     }
 
@@ -104,14 +104,14 @@ impl Numbers {
     }
 }
 
-fn slow(lame: bool) -> Claim {
+fn slow(weaker: bool) -> Claim {
     let n = numbers();
     let (seen, ego) = (speed("t_v"), speed("s_v"));
     let reacted = margin::rush(&n.contract, seen, Term::of(n.contract.follower.reaction));
     let gap = margin::safe_gap(&n.contract, seen, ego);
     Claim::new(
         [
-            n.no_lamer(lame),
+            n.at_least_as_capable(weaker),
             not_negative([seen, ego]),
             number(0.0).less(gap),
         ],
@@ -120,17 +120,17 @@ fn slow(lame: bool) -> Claim {
 }
 
 /// The other is no faster than that at the end.
-fn ramp(n: &Numbers, from: Reach<Term>, ego: Term, time: Term, lame: bool) -> Vec<Formula> {
+fn ramp(n: &Numbers, from: Reach<Term>, ego: Term, time: Term, weaker: bool) -> Vec<Formula> {
     vec![
-        n.no_lamer(lame),
+        n.at_least_as_capable(weaker),
         n.slow(ego, from.speed),
         from.speed.less(n.other_most),
         (from.speed + n.other_a * time).at_most(n.other_most),
     ]
 }
 
-fn capped(n: &Numbers, from: Reach<Term>, _: Term, _: Term, lame: bool) -> Vec<Formula> {
-    let order = if lame {
+fn capped(n: &Numbers, from: Reach<Term>, _: Term, _: Term, weaker: bool) -> Vec<Formula> {
+    let order = if weaker {
         all([])
     } else {
         n.most.at_most(n.other_most)
@@ -144,14 +144,14 @@ fn capped(n: &Numbers, from: Reach<Term>, _: Term, _: Term, lame: bool) -> Vec<F
 
 type Given = fn(&Numbers, Reach<Term>, Term, Term, bool) -> Vec<Formula>;
 
-fn later(given: Given, lame: bool) -> Claim {
+fn later(given: Given, weaker: bool) -> Claim {
     let n = numbers();
     let from = state(["t", "t_v"]);
     let (ego, ego_then, time) = (speed("s_v"), speed("s_v_then"), seconds("time"));
     let then = from.rushing(n.other_a, n.other_most, time);
     let gained = ego_then * ego_then - ego * ego;
     let grown = then.rest(n.braking) - from.rest(n.braking);
-    let given = given(&n, from, ego, time, lame).into_iter().chain([
+    let given = given(&n, from, ego, time, weaker).into_iter().chain([
         not_negative([from.speed, ego, ego_then, time]),
         ego_then.at_most(ego + n.a * time),
         any([ego_then.at_most(ego), ego_then.at_most(n.most)]),

@@ -151,7 +151,7 @@ impl Shield {
     }
 
     /// The same margin of stopping from what there is to spare already, which does not lose how
-    /// distance and speed hang together: with a latency of a whole period, the previous command
+    /// distance and speed correlate: with a latency of a whole period, the previous command
     /// acts for a period, then this one, then the brakes.
     fn stop_by_spare(&self, states: &States, previous: Interval, command: Interval) -> Interval {
         let ego = self.contract.ego;
@@ -168,7 +168,7 @@ impl Shield {
 }
 
 /// When the ego has gone as far as `target`. The sooner, the faster and the farther it is already:
-/// so the ends come from the corners, and nothing is lost to how the numbers hang together.
+/// so the ends come from the corners, and no correlation of the numbers is lost.
 fn clears(contract: &Contract, least: Reach<Interval>, target: Interval) -> Interval {
     let at = |end: fn(Interval) -> Interval, target| {
         let from = Reach {
