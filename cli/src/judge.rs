@@ -7,7 +7,7 @@ use cede_controller::Contract;
 use cede_data::Dataset;
 use cede_sim::driver::{Baseline, FitError};
 use cede_sim::episode::Until;
-use cede_sim::evaluate::{Drive, Label, Mode, Protocol, Round, Row, Selection, evaluate};
+use cede_sim::evaluate::{Drive, Label, Mode, Protocol, Round, Selection, TableRow, evaluate};
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -115,8 +115,8 @@ impl Plan {
     pub(crate) fn judge(
         &self,
         dataset: &Dataset,
-        mut each: impl FnMut(&Row, &[Drive<'_>]),
-    ) -> Result<Vec<Row>, Failure> {
+        mut each: impl FnMut(&TableRow, &[Drive<'_>]),
+    ) -> Result<Vec<TableRow>, Failure> {
         let blocks = self.selections.len() * self.shields.len();
         let bar = progress(blocks * self.contenders.len());
         let mut rows = Vec::new();
@@ -133,7 +133,7 @@ impl Plan {
                 bar.set_message(format!("{selection}: {}", contender.name()));
                 match self.drive(contender, shield, &rounds) {
                     Ok(drives) => {
-                        let row = Row::of(self.label(contender, selection, shield), &drives);
+                        let row = TableRow::of(self.label(contender, selection, shield), &drives);
                         each(&row, &drives);
                         rows.push(row);
                     }

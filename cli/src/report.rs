@@ -14,7 +14,7 @@ use crate::failure::Failure;
 use crate::plural::Count;
 use cede_controller::Contract;
 use cede_data::{Dataset, Encounter, EncounterId, Role, Split, output};
-use cede_sim::evaluate::{Drive, Row};
+use cede_sim::evaluate::{Drive, TableRow};
 use cede_sim::transparency;
 use cede_train::run::curve::Point;
 use model::{Case, Episodes, Interventions, Page};
@@ -78,7 +78,7 @@ impl Report {
     }
 
     /// Adds a row of the table, and what its episodes show.
-    pub(crate) fn add(&mut self, row: &Row, drives: &[Drive<'_>]) {
+    pub(crate) fn add(&mut self, row: &TableRow, drives: &[Drive<'_>]) {
         let driver = match row.shield.as_str() {
             "off" => row.driver.clone(),
             "on" => format!("{} + shield", row.driver),

@@ -11,7 +11,7 @@ use crate::table;
 use crate::threads::Threads;
 use cede_data::{Dataset, Split};
 use cede_sim::driver::Baseline;
-use cede_sim::evaluate::{Row, Selection};
+use cede_sim::evaluate::{Selection, TableRow};
 use episodes::EpisodeFile;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -68,7 +68,7 @@ struct Output<'a> {
     data: &'a str,
     site: &'a str,
     seed: u64,
-    rows: &'a [Row],
+    rows: &'a [TableRow],
 }
 
 /// Runs the command.
@@ -129,7 +129,7 @@ impl Args {
         })
     }
 
-    fn print(&self, dataset: &Dataset, rows: &[Row]) -> Result<(), Failure> {
+    fn print(&self, dataset: &Dataset, rows: &[TableRow]) -> Result<(), Failure> {
         let site = dataset.site.name.as_str();
         if self.json {
             let output = Output {

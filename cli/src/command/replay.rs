@@ -9,7 +9,7 @@ use crate::report::{Report, command};
 use cede_controller::Contract;
 use cede_data::{Dataset, Encounter};
 use cede_sim::episode::Until;
-use cede_sim::evaluate::{Label, Mode, Protocol, Row, evaluate};
+use cede_sim::evaluate::{Label, Mode, Protocol, TableRow, evaluate};
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -23,7 +23,7 @@ pub(crate) struct Args {
     site: String,
     /// Tracks of the left-turner and of the other; by default the two that came closest in time
     #[arg(long, value_name = "LEFT,OTHER")]
-    pair: Option<Pair>,
+    pair: Option<TrackPair>,
     /// Who drives both vehicles, separated by commas; those that learn do so from this recording
     #[arg(long, default_value = "replay", value_name = "NAME[,NAME…]")]
     driver: Drivers,
@@ -42,12 +42,12 @@ pub(crate) struct Args {
 }
 
 #[derive(Clone, Copy)]
-struct Pair {
+struct TrackPair {
     left: u32,
     other: u32,
 }
 
-impl FromStr for Pair {
+impl FromStr for TrackPair {
     type Err = &'static str;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
@@ -104,7 +104,7 @@ fn drive(
         until: "cleared",
         shield: if shield.is_some() { "on" } else { "off" },
     };
-    let row = Row::of(label, &drives);
+    let row = TableRow::of(label, &drives);
     for drive in &drives {
         numbers::drive(&row, drive);
     }
@@ -127,14 +127,16 @@ impl Args {
         let all = || dataset.encounters.iter();
         let chosen = match self.pair {
             None => all().min_by(|a, b| a.pet.total_cmp(&b.pet)),
-            Some(Pair { left, other }) => all().find(|e| (e.id.left, e.id.other) == (left, other)),
+            Some(TrackPair { left, other }) => {
+                all().find(|e| (e.id.left, e.id.other) == (left, other))
+            }
         };
         chosen.ok_or_else(|| {
             let pairs = all().map(|e| format!("{},{}", e.id.left, e.id.other));
             let pairs = pairs.collect::<Vec<_>>().join("  ");
             let file = self.file.display();
             match self.pair {
-                Some(Pair { left, other }) => Failure::input(
+                Some(TrackPair { left, other }) => Failure::input(
                     format!("{file}: tracks {left} and {other} do not make an encounter"),
                     format!("name one of these with --pair: {pairs}"),
                 ),

@@ -15,7 +15,7 @@ use cede_controller::{Contract, Policy};
 use cede_data::{Dataset, Encounter, Split, output};
 use cede_sim::driver::{Baseline, Cede, DriverFactory, PolicyAlone};
 use cede_sim::episode::Until;
-use cede_sim::evaluate::{Drive, Label, Mode, Protocol, Row, Selection, evaluate};
+use cede_sim::evaluate::{Drive, Label, Mode, Protocol, Selection, TableRow, evaluate};
 use cede_train::run::curve::Curve;
 use cede_train::run::{Algorithm, Settings};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -83,7 +83,7 @@ struct Trained {
 struct Seeded {
     seed: Option<u64>,
     #[serde(flatten)]
-    row: Row,
+    row: TableRow,
 }
 
 /// What `--json` prints, and what is kept in the folder.
@@ -164,7 +164,7 @@ struct Judged<'d> {
     algorithm: Algorithm,
     seed: u64,
     drives: Vec<Drive<'d>>,
-    row: Row,
+    row: TableRow,
 }
 
 impl Args {
@@ -316,7 +316,7 @@ impl Args {
                         split: split.clone(),
                         algorithm: job.algorithm,
                         seed: job.seed,
-                        row: Row::of(label(job.algorithm, split, shield), &[]),
+                        row: TableRow::of(label(job.algorithm, split, shield), &[]),
                         drives,
                     });
                 }
@@ -324,7 +324,7 @@ impl Args {
         }
         for judged in &mut all {
             let label = label(judged.algorithm, &judged.split, judged.shield);
-            judged.row = Row::of(label, &judged.drives);
+            judged.row = TableRow::of(label, &judged.drives);
         }
         Ok(all)
     }

@@ -8,7 +8,7 @@ use cede_controller::kinematics::State;
 use cede_data::lanelet::LineKind;
 use cede_data::{Encounter, EncounterId, Participant, Role, lanelet};
 use cede_sim::episode::{End, Episode};
-use cede_sim::evaluate::{Drive, Row};
+use cede_sim::evaluate::{Drive, TableRow};
 use cede_sim::metrics::{recorded_states, svo_series};
 use cede_train::driving::judge::Score;
 use cede_train::run::curve::Point;
@@ -25,7 +25,7 @@ pub(super) struct Page {
     pub(super) provenance: String,
     /// Names of the drivers in the order of their colours.
     pub(super) drivers: Vec<String>,
-    pub(super) rows: Vec<Row>,
+    pub(super) rows: Vec<TableRow>,
     pub(super) paper: Vec<PaperRow>,
     pub(super) map: Map,
     pub(super) cases: Vec<Case>,
@@ -344,7 +344,7 @@ pub(super) struct Episodes {
 }
 
 impl Episodes {
-    pub(super) fn of(driver: &str, row: &Row, drives: &[Drive<'_>]) -> Self {
+    pub(super) fn of(driver: &str, row: &TableRow, drives: &[Drive<'_>]) -> Self {
         let pet = |drive: &Drive<'_>| match drive.episode.arrivals {
             [Some(left), Some(other)] => Some(f64::from((left - other).abs()) * 0.1),
             _ => None,
@@ -363,7 +363,7 @@ impl Episodes {
     }
 }
 
-fn block(row: &Row) -> String {
+fn block(row: &TableRow) -> String {
     format!("{}, {}, until {}", row.split, row.mode, row.until)
 }
 
@@ -388,7 +388,7 @@ pub(super) struct Interventions {
 
 impl Interventions {
     /// `None` if the shield never acted.
-    pub(super) fn of(driver: &str, row: &Row, drives: &[Drive<'_>]) -> Option<Self> {
+    pub(super) fn of(driver: &str, row: &TableRow, drives: &[Drive<'_>]) -> Option<Self> {
         let mut points = Vec::new();
         let mut classes: Vec<(Class, usize)> = Vec::new();
         let mut steps = 0;

@@ -25,7 +25,7 @@ pub(crate) struct Args {
 
 /// A row of the file: first the columns of INTERACTION's list of selected scenarios, then ours.
 #[derive(Serialize)]
-struct Row<'d> {
+struct EncounterRow<'d> {
     #[serde(rename = "Scenario")]
     scenario: &'d str,
     #[serde(rename = "File_id")]
@@ -60,7 +60,7 @@ struct Row<'d> {
     y: String,
 }
 
-impl<'d> Row<'d> {
+impl<'d> EncounterRow<'d> {
     fn of(scenario: &'d str, encounter: &Encounter) -> Self {
         let vehicle = |role| encounter.judged(role);
         Self {
@@ -98,7 +98,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         output::write(path, |out| {
             let mut csv = csv::Writer::from_writer(out);
             for encounter in &dataset.encounters {
-                csv.serialize(Row::of(&dataset.site.folder, encounter))?;
+                csv.serialize(EncounterRow::of(&dataset.site.folder, encounter))?;
             }
             csv.flush()
         })?;

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use cede_data::{Role, output};
 use cede_sim::episode::End;
-use cede_sim::evaluate::{Drive, Row};
+use cede_sim::evaluate::{Drive, TableRow};
 use parquet::errors::ParquetError;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::record::RecordWriter;
@@ -86,11 +86,11 @@ pub(crate) struct Record {
 }
 
 /// The episodes behind `row`.
-pub(crate) fn records(row: &Row, drives: &[Drive<'_>]) -> impl Iterator<Item = Record> {
+pub(crate) fn records(row: &TableRow, drives: &[Drive<'_>]) -> impl Iterator<Item = Record> {
     drives.iter().map(|drive| record(row, drive))
 }
 
-fn record(row: &Row, drive: &Drive<'_>) -> Record {
+fn record(row: &TableRow, drive: &Drive<'_>) -> Record {
     let Drive {
         encounter,
         ego,

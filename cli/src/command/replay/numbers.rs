@@ -3,7 +3,7 @@
 use crate::report::{Class, words};
 use cede_controller::kinematics::State;
 use cede_data::{Encounter, Role};
-use cede_sim::evaluate::{Drive, Row};
+use cede_sim::evaluate::{Drive, TableRow};
 use cede_sim::metrics::{recorded_states, svo_series};
 
 /// Rows of the table are so many steps (0.5 s) apart.
@@ -24,7 +24,7 @@ pub(super) fn record(encounter: &Encounter) {
 }
 
 /// The encounter as it was driven; of a driver that replays the record only what the shield did to it.
-pub(super) fn drive(row: &Row, drive: &Drive<'_>) {
+pub(super) fn drive(row: &TableRow, drive: &Drive<'_>) {
     let episode = &drive.episode;
     let first = episode.first().map_or("nobody", name);
     let overruled = overruled(drive);

@@ -2,7 +2,7 @@
 
 use super::Seeded;
 use crate::table::PAPER;
-use cede_sim::evaluate::Row;
+use cede_sim::evaluate::TableRow;
 use cede_sim::statistics::Share;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 
@@ -78,7 +78,7 @@ fn table(rows: &[&Seeded], paper: &str) -> Table {
 }
 
 fn cells(driver: &str, seeds: &[&Seeded]) -> [String; 8] {
-    let over = |f: fn(&Row) -> Option<f64>| -> Vec<f64> {
+    let over = |f: fn(&TableRow) -> Option<f64>| -> Vec<f64> {
         seeds.iter().filter_map(|s| f(&s.row)).collect()
     };
     let accuracy = over(|row| row.priority_accuracy);

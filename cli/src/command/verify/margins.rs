@@ -44,7 +44,7 @@ pub(crate) struct Margins {
 }
 
 /// A predicate under a contract, and what is known of it.
-struct Row {
+struct MarginRow {
     contract: &'static str,
     predicate: Predicate,
     slack: f32,
@@ -62,7 +62,7 @@ impl Margins {
         let mut open: Vec<String> = rows
             .iter()
             .filter(|row| !row.shown())
-            .map(Row::open)
+            .map(MarginRow::open)
             .collect();
         if short * FASTEST > f64::from(INFLATION) {
             open.push(format!("plans go {short:e} s too short"));
@@ -74,13 +74,13 @@ impl Margins {
         }
     }
 
-    fn rows(&self) -> Vec<Row> {
+    fn rows(&self) -> Vec<MarginRow> {
         let all = CONTRACTS
             .iter()
             .flat_map(|contract| Predicate::ALL.map(|predicate| (contract, predicate)));
         all.map(|((name, contract), predicate)| {
             eprintln!("{}, {name} …", predicate.name());
-            Row {
+            MarginRow {
                 contract: name,
                 predicate,
                 slack: contract.slack,
@@ -90,16 +90,16 @@ impl Margins {
         .collect()
     }
 
-    fn told(&self, rows: &[Row], short: f64) -> String {
+    fn told(&self, rows: &[MarginRow], short: f64) -> String {
         if self.json {
-            let rows: Vec<_> = rows.iter().map(Row::json).collect();
+            let rows: Vec<_> = rows.iter().map(MarginRow::json).collect();
             return serde_json::json!({ "margins": rows, "going_short_s": short }).to_string();
         }
         let mut lines = vec![format!(
             "{:<26} {:<38} {:>9} {:>11} {:>8} {:>9}",
             "predicate", "contract", "boxes", "at most, mm", "met, mm", "slack, mm"
         )];
-        lines.extend(rows.iter().map(Row::text));
+        lines.extend(rows.iter().map(MarginRow::text));
         let (micros, mm) = (1e6 * short, 1e3 * short * FASTEST);
         lines.push(format!(
             "Plans go at most {micros:.1} µs too short, for every f32 up to a minute: {mm:.3} mm at {FASTEST} m/s, of {:.0} mm by which footprints are inflated.",
@@ -109,7 +109,7 @@ impl Margins {
     }
 }
 
-impl Row {
+impl MarginRow {
     fn shown(&self) -> bool {
         self.bound.covered_by(self.slack)
     }

@@ -55,7 +55,7 @@ impl Policy {
         let subject = named(place, Subject::new(weights).into_diagnostic())?;
         let properties = self.properties()?;
         self.threads.start()?;
-        let rows: Vec<Row<'_>> = properties.iter().map(|p| self.row(&subject, p)).collect();
+        let rows: Vec<PropertyRow<'_>> = properties.iter().map(|p| self.row(&subject, p)).collect();
         // A reader that has seen enough may close the pipe.
         let _ = writeln!(std::io::stdout(), "{}", self.told(&subject, &rows));
         let open: Vec<&str> = rows
@@ -80,29 +80,32 @@ impl Policy {
         Ok(named(path, properties)?.property)
     }
 
-    fn row<'p>(&self, subject: &Subject<'_>, property: &'p StateProperty) -> Row<'p> {
+    fn row<'p>(&self, subject: &Subject<'_>, property: &'p StateProperty) -> PropertyRow<'p> {
         let limit = Duration::from_secs(self.timeout);
         let settled = subject.settle(property, Instant::now() + limit, self.check);
         let largest = self
             .sweep
             .then(|| subject.largest_scale(property, Instant::now() + limit));
-        Row {
+        PropertyRow {
             property,
             settled,
             largest,
         }
     }
 
-    fn told(&self, subject: &Subject<'_>, rows: &[Row<'_>]) -> String {
+    fn told(&self, subject: &Subject<'_>, rows: &[PropertyRow<'_>]) -> String {
         if self.json {
             let perspective = match subject.perspective() {
                 Perspective::Joint => "joint",
                 Perspective::Ego => "ego",
             };
-            let rows: Vec<_> = rows.iter().map(Row::json).collect();
+            let rows: Vec<_> = rows.iter().map(PropertyRow::json).collect();
             return serde_json::json!({ "semantics": "f32", "perspective": perspective, "properties": rows }).to_string();
         }
-        rows.iter().map(Row::text).collect::<Vec<_>>().join("\n")
+        rows.iter()
+            .map(PropertyRow::text)
+            .collect::<Vec<_>>()
+            .join("\n")
     }
 }
 
@@ -122,13 +125,13 @@ pub(super) fn named<T>(path: &Path, result: miette::Result<T>) -> Result<T, Fail
         .map_err(Failure::Input)
 }
 
-struct Row<'p> {
+struct PropertyRow<'p> {
     property: &'p StateProperty,
     settled: Settled,
     largest: Option<f64>,
 }
 
-impl Row<'_> {
+impl PropertyRow<'_> {
     fn word(&self) -> &'static str {
         match self.settled.finding {
             Finding::Proved => "proved",
