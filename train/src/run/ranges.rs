@@ -1,20 +1,21 @@
-//! Which settings a training can begin with.
+//! The ranges of the settings.
 
-use crate::algorithm::{apg, bc, sac};
-use crate::run;
+use crate::algorithm::apg::ApgSettings;
+use crate::algorithm::bc::BcSettings;
+use crate::algorithm::sac::SacSettings;
 use cede_controller::policy::mlp::{LANES, MAX_WIDTH};
 
-/// A setting that no training can begin with.
+/// A setting that is out of its range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{name} must be {range}")]
 pub struct OutOfRange {
-    /// The setting.
+    /// Name of the setting.
     pub name: &'static str,
-    /// What it must be.
+    /// Its range in words.
     pub range: &'static str,
 }
 
-/// A setting, whether it is in its range, and the range in words.
+/// The name of a setting, whether it is in its range, and the range in words.
 type Check = (&'static str, bool, &'static str);
 
 const COUNT: &str = "1 to 1,000,000";
@@ -44,17 +45,17 @@ fn width(width: usize) -> Check {
     ("width", fits, "a multiple of 16 up to 128")
 }
 
-fn of_bc(s: &bc::Settings) -> Vec<Check> {
-    vec![
+pub(super) fn check_bc(s: &BcSettings) -> Result<(), OutOfRange> {
+    first_violation(vec![
         width(s.width),
         count("batch", s.batch),
         positive("rate", s.rate),
-    ]
+    ])
 }
 
-fn of_sac(s: &sac::Settings) -> Vec<Check> {
+pub(super) fn check_sac(s: &SacSettings) -> Result<(), OutOfRange> {
     let rates = &s.rates;
-    vec![
+    first_violation(vec![
         width(s.width),
         count("batch", s.batch),
         count("parallel", s.parallel),
@@ -81,15 +82,15 @@ fn of_sac(s: &sac::Settings) -> Vec<Check> {
             "a number",
         ),
         positive("rates.initial_temperature", rates.initial_temperature),
-    ]
+    ])
 }
 
-fn of_apg(s: &apg::Settings) -> Vec<Check> {
+pub(super) fn check_apg(s: &ApgSettings) -> Result<(), OutOfRange> {
     let (cost, refinement, claims) = (&s.cost, &s.refinement, &s.claims);
     let joint = s.width.saturating_mul(s.members as usize);
     let updates = |name, n| (name, n <= 10_000_000, "0 to 10,000,000");
     let horizon = |name, n| (name, (1..=1_000).contains(&n), HORIZON);
-    vec![
+    first_violation(vec![
         width(s.width),
         (
             "members",
@@ -125,33 +126,22 @@ fn of_apg(s: &apg::Settings) -> Vec<Check> {
         not_negative("claims.slope_margin", claims.slope_margin),
         ("claims.fresh", claims.fresh <= 10_000, "0 to 10,000"),
         ("claims.hard", claims.hard <= 10_000, "0 to 10,000"),
-    ]
+    ])
 }
 
-impl run::Settings {
-    /// Whether a training can begin with them.
-    ///
-    /// # Errors
-    /// The first that is out of its range.
-    pub fn check(&self) -> Result<(), OutOfRange> {
-        let checks = match self {
-            Self::Bc(settings) => of_bc(settings),
-            Self::Sac(settings) => of_sac(settings),
-            Self::Apg(settings) => of_apg(settings),
-        };
-        match checks.into_iter().find(|(_, holds, _)| !holds) {
-            Some((name, _, range)) => Err(OutOfRange { name, range }),
-            None => Ok(()),
-        }
+fn first_violation(checks: Vec<Check>) -> Result<(), OutOfRange> {
+    match checks.into_iter().find(|(_, holds, _)| !holds) {
+        Some((name, _, range)) => Err(OutOfRange { name, range }),
+        None => Ok(()),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::run::Algorithm;
+    use crate::run::algorithm::Algorithm;
 
     #[test]
-    fn what_trainings_begin_with_is_in_range() {
+    fn the_defaults_are_in_range() {
         for algorithm in Algorithm::ALL {
             assert_eq!(algorithm.settings().check(), Ok(()));
             assert_eq!(algorithm.reproduction().check(), Ok(()));
@@ -159,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_training_can_begin_with_is_named() {
+    fn a_setting_out_of_range_is_named() {
         for (algorithm, set, name) in [
             (Algorithm::Bc, "batch = 0", "batch"),
             (Algorithm::Bc, "rate = nan", "rate"),
