@@ -1,10 +1,10 @@
-//! The table on stdout, with the paper's rows beside ours.
+//! The table on stdout, with the paper's rows for comparison.
 
 use crate::plural::Count;
 use cede_sim::evaluate::{ConfidenceInterval, TableRow};
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 
-/// What the paper's Table II prints for the site EP0: driver, split, n, priority accuracy,
+/// The paper's Table II for the site EP0: driver, split, n, priority accuracy,
 /// episode length error, collisions.
 pub(crate) const PAPER: [(&str, &str, usize, f64, f64, usize); 6] = [
     ("paper: BC", "train", 215, 0.7209, 0.5540, 1),
@@ -15,8 +15,8 @@ pub(crate) const PAPER: [(&str, &str, usize, f64, f64, usize); 6] = [
     ("paper: SACER-SVO", "test", 17, 0.9412, 0.3078, 0),
 ];
 
-/// The rows of `rows` in blocks of equal split, mode, end and shield; `paper` adds the paper's to
-/// those that follow its protocol.
+/// The rows of `rows` in blocks of equal split, mode, end and shield; `paper` adds the paper's
+/// rows to the blocks that follow its protocol.
 pub(crate) fn render(rows: &[TableRow], paper: bool) -> String {
     let mut table = Table::new();
     table

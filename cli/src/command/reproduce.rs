@@ -68,7 +68,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let dataset = args.source.load(1)?;
     if dataset.split(Split::Train).next().is_none() {
         return Err(Failure::input(
-            "the training files contain no encounters",
+            "no encounters in the training files",
             "add training files to the folder, or name another site",
         ));
     }

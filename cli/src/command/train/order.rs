@@ -41,7 +41,7 @@ impl Order<'_> {
         let own: Vec<&Encounter> = dataset.split(Split::Train).collect();
         if own.is_empty() {
             return Err(Failure::input(
-                "the training files contain no encounters",
+                "no encounters in the training files",
                 "add training files to the folder, or name another site",
             ));
         }
