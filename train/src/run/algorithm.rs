@@ -128,6 +128,14 @@ mod tests {
     }
 
     #[test]
+    fn the_settings_to_begin_with_are_in_range() {
+        for algorithm in Algorithm::ALL {
+            assert_eq!(algorithm.settings().check(), Ok(()));
+            assert_eq!(algorithm.reproduction().check(), Ok(()));
+        }
+    }
+
+    #[test]
     fn the_defaults_are_those_of_the_papers_table() {
         let text = Algorithm::SacerSvo.settings().text();
         for line in [

@@ -1,12 +1,10 @@
 //! Soft actor-critic's update: networks, optimisers and temperature.
 
-use crate::algorithm::sac::networks::Networks;
+use crate::algorithm::sac::networks::{Networks, normals};
 use crate::algorithm::sac::settings::Rates;
 use crate::driving::replay::Batch;
 use crate::nn::adam::Adam;
 use crate::nn::network::Network;
-use rand::RngExt;
-use rand_distr::StandardNormal;
 use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 
@@ -114,18 +112,13 @@ impl Learner {
     }
 }
 
-/// `count` standard normal deviates.
-pub(super) fn normals(count: usize, random: &mut Pcg64) -> Vec<f32> {
-    (0..count).map(|_| random.sample(StandardNormal)).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::driving::replay::{Replay, Transition};
     use crate::nn::finite_differences::{reference, wide};
     use crate::nn::network::Tape;
-    use rand::SeedableRng;
+    use rand::{RngExt, SeedableRng};
 
     /// Reward 1 − (a − s)²: for every discount the best action equals the state. States are random, so
     /// the value of the best policy is 1 / (1 − γ), less the cost of its entropy.

@@ -144,7 +144,7 @@ fn zero(gradient: &mut Vec<f32>, length: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::algorithm::sac::learner::normals;
+    use crate::algorithm::sac::networks::normals;
     use crate::nn::finite_differences::{assert_gradient, differences, reference, wide};
     use crate::nn::network::Network;
     use rand::{RngExt, SeedableRng};

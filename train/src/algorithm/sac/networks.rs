@@ -3,6 +3,8 @@
 use crate::algorithm::sac::settings::Rates;
 use crate::nn::gaussian::Sample;
 use crate::nn::network::{Delta, Network, Tape};
+use rand::RngExt;
+use rand_distr::StandardNormal;
 use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 
@@ -123,4 +125,9 @@ pub(super) fn join(observations: &[f32], actions: &[f32], rows: usize, joined: &
         joined.extend_from_slice(o);
         joined.extend_from_slice(a);
     }
+}
+
+/// `count` standard normal deviates.
+pub(super) fn normals(count: usize, random: &mut Pcg64) -> Vec<f32> {
+    (0..count).map(|_| random.sample(StandardNormal)).collect()
 }
