@@ -10,7 +10,7 @@ use cede_formats::onnx::{self, ImportError, Told};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::path::PathBuf;
 
-/// What `cede help import` says beside the options.
+/// The text below the options in `cede help import`.
 fn help() -> String {
     let sets = FeatureSet::ALL.map(|set| format!("{} {}", set.name(), set.count()));
     format!("\
