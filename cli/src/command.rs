@@ -13,13 +13,13 @@ mod verify;
 use crate::failure::Failure;
 use clap::Subcommand;
 
-/// What to do.
+/// The subcommand.
 #[derive(Default, Subcommand)]
 pub(crate) enum Command {
     /// Drive the embedded scenarios, print the table and write the report (the default)
     #[default]
     Demo,
-    /// Read recordings: find their encounters, print and draw what is in them
+    /// Read recordings: find their encounters, print and draw their content
     #[command(subcommand)]
     Data(data::Data),
     /// Judge drivers on recorded or synthetic encounters
@@ -30,9 +30,9 @@ pub(crate) enum Command {
     Train(train::Args),
     /// Train and judge the rows of the paper's table
     Reproduce(reproduce::Args),
-    /// Write a policy as ONNX or safetensors, for other programs
+    /// Write a policy as ONNX or safetensors
     Export(export::Args),
-    /// Make a weights file of an ONNX policy that was trained elsewhere
+    /// Convert an ONNX policy that was trained elsewhere to a weights file
     Import(import::Args),
     /// Prove properties of networks, and check proofs
     #[command(subcommand)]

@@ -8,11 +8,11 @@ use cede_sim::driver::{Baseline, Cede, DriverFactory, FitError, PolicyAlone, Shi
 use std::path::Path;
 use std::str::FromStr;
 
-/// The drivers that the user named, in order.
+/// The drivers that the user has named, in order.
 #[derive(Clone, Debug)]
 pub(crate) struct Drivers {
     names: Vec<Name>,
-    /// The user said `all`: those that cannot be had here are left out, instead of a failure.
+    /// Whether drivers that cannot be fitted are left out, as with `all`; otherwise they are an error.
     pub(crate) lenient: bool,
 }
 
@@ -37,7 +37,7 @@ impl Name {
 }
 
 impl Drivers {
-    /// All of them, as far as they can be had.
+    /// All drivers that can be fitted.
     pub(crate) fn all() -> Self {
         Self {
             names: Name::all().collect(),
@@ -45,10 +45,10 @@ impl Drivers {
         }
     }
 
-    /// The drivers themselves; `weights` is the file of Cede's policy, by default the embedded one.
+    /// The drivers. `weights` is the file of Cede's policy; the default is the embedded one.
     ///
     /// # Errors
-    /// The file cannot be used, or Cede is not among them.
+    /// The file cannot be used, or Cede is not among the drivers.
     pub(crate) fn contenders(&self, weights: Option<&Path>) -> Result<Vec<Contender>, Failure> {
         if weights.is_some() && !self.names.contains(&Name::Cede) {
             let drivers: Vec<_> = self.names.iter().map(|name| name.text()).collect();
@@ -66,7 +66,7 @@ impl Drivers {
     }
 }
 
-/// The policy of a weights file, or the one that comes with the program.
+/// The policy of a weights file, or the embedded one.
 ///
 /// # Errors
 /// The file cannot be used.
@@ -108,9 +108,9 @@ impl FromStr for Drivers {
 
 /// A driver that is judged.
 pub(crate) enum Contender {
-    /// One that follows rules, with or without the shield in front.
+    /// A baseline, with or without the shield.
     Baseline(Baseline),
-    /// The controller, or without the shield its policy alone.
+    /// The controller, or its policy alone if there is no shield.
     Cede(Policy<'static>),
 }
 
@@ -123,10 +123,10 @@ impl Contender {
         }
     }
 
-    /// Makes its drivers; those that learn do so from `training`. With a `contract` they carry the shield.
+    /// Makes its drivers. Drivers that learn are fitted to `training`. With a `contract` there is a shield.
     ///
     /// # Errors
-    /// It learns, and `training` is empty.
+    /// The driver learns, and `training` is empty.
     pub(crate) fn fit(
         &self,
         training: &[&Encounter],

@@ -1,33 +1,33 @@
-//! Why a command ended badly, and the exit code that says so.
+//! Why a command failed, and its exit code.
 
 use cede_data::DataError;
 use cede_data::output::OutputError;
 use std::process::ExitCode;
 
-/// Why a command ended badly. Most usage errors are clap's.
+/// Why a command failed. Clap reports most usage errors itself.
 pub(crate) enum Failure {
-    /// Options that do not go together: exit code 2.
+    /// Options that exclude each other: exit code 2.
     Usage(String),
-    /// A check ran and did not hold: exit code 1.
+    /// A check failed: exit code 1.
     Check(String),
     /// The input or the output cannot be used: exit code 3.
     Input(miette::Report),
-    /// Stopped by Ctrl-C after saving what there was: exit code 4.
+    /// Interrupted by Ctrl-C or SIGTERM, after saving the work done: exit code 4.
     Interrupted,
 }
 
 impl Failure {
-    /// Bad input, and what the user can do about it.
+    /// Unusable input, and how the user can correct it.
     pub(crate) fn input(problem: impl std::fmt::Display, mend: impl Into<String>) -> Self {
         Self::Input(miette::miette!(help = mend.into(), "{problem}"))
     }
 
-    /// An option that would be ignored beside `other`.
+    /// `option` would be ignored because of `other`.
     pub(crate) fn ignored(option: &str, other: &str) -> Self {
         Self::Usage(format!("{option} has no effect with {other}: leave it out"))
     }
 
-    /// Tells the user on stderr and gives the exit code.
+    /// Reports the failure on stderr and returns the exit code.
     pub(crate) fn report(self) -> ExitCode {
         match self {
             Self::Usage(what) => {

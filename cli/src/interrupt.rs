@@ -1,4 +1,4 @@
-//! Ctrl-C and SIGTERM: exit code 4, at once, or after what is under way has been saved, but within a second.
+//! Ctrl-C and SIGTERM: exit code 4 within a second, after saving if the command saves its work.
 
 use crate::failure::Failure;
 use cede_data::output;
@@ -9,17 +9,17 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
 
-/// How long a command has to save what was done.
+/// Time that a command has for saving its work.
 const GRACE: Duration = Duration::from_millis(800);
-/// How long a message may take where nobody reads it.
+/// Time that a message may take if nobody reads stderr.
 const PATIENCE: Duration = Duration::from_millis(100);
 
 static DEFERRED: AtomicBool = AtomicBool::new(false);
 static ASKED: AtomicBool = AtomicBool::new(false);
 
-/// Makes Ctrl-C (and SIGTERM) end the program with exit code 4.
+/// Makes Ctrl-C and SIGTERM end the program with exit code 4.
 pub(crate) fn install() {
-    // Where no handler can be set the system's own stays, and the program still ends.
+    // Without a handler the system's default applies, which also ends the program.
     let _ = ctrlc::set_handler(|| {
         let again = ASKED.swap(true, Relaxed);
         if again || !DEFERRED.load(Relaxed) {
@@ -32,10 +32,10 @@ pub(crate) fn install() {
     });
 }
 
-/// Ends the program; nothing half-written and no solver stays.
+/// Ends the program. Removes temporary files and stops solvers.
 fn end() {
     let (said, waits) = mpsc::channel();
-    // Another thread may be stuck in a message, with the lock on stderr, because nobody reads it.
+    // Another thread may hold the lock on stderr while it writes a message that nobody reads.
     thread::spawn(move || {
         eprintln!("interrupted");
         said.send(())
@@ -46,15 +46,15 @@ fn end() {
     process::exit(4);
 }
 
-/// From now on the first Ctrl-C is left to [`check`], if the command comes there soon.
+/// From now on [`check`] handles the first Ctrl-C, if the command calls it within the time for saving.
 pub(crate) fn defer() {
     DEFERRED.store(true, Relaxed);
 }
 
-/// A place at which a command can stop.
+/// Called where a command can stop.
 ///
 /// # Errors
-/// [`Failure::Interrupted`] if the user has asked to stop.
+/// [`Failure::Interrupted`] if the user has interrupted the command.
 pub(crate) fn check() -> Result<(), Failure> {
     if ASKED.load(Relaxed) {
         return Err(Failure::Interrupted);

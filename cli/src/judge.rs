@@ -1,4 +1,4 @@
-//! Every driver on every split: the rows of the table, with progress on stderr.
+//! Judges every driver on every split: the rows of the table, with progress on stderr.
 
 use crate::drivers::Contender;
 use crate::failure::Failure;
@@ -7,31 +7,31 @@ use cede_controller::Contract;
 use cede_data::Dataset;
 use cede_sim::driver::{Baseline, FitError};
 use cede_sim::episode::Until;
-use cede_sim::evaluate::{Drive, Label, Mode, Protocol, Round, Row, Selection, evaluate};
+use cede_sim::evaluate::{Drive, Label, Mode, Protocol, Round, Selection, TableRow, evaluate};
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// What is judged, and how.
 pub(crate) struct Plan {
-    /// Who drives.
+    /// The drivers to judge.
     pub(crate) contenders: Vec<Contender>,
-    /// Whether those that cannot be fitted are left out, instead of a failure.
+    /// Whether drivers that cannot be fitted are left out; otherwise they are an error.
     pub(crate) lenient: bool,
-    /// On what.
+    /// The encounters to judge on.
     pub(crate) selections: Vec<Selection>,
     /// Whether both vehicles or one are under test.
     pub(crate) mode: ModeName,
-    /// In ego mode, who drives the other vehicle.
+    /// In ego mode, the driver of the other vehicle.
     pub(crate) partner: Baseline,
-    /// When an episode is over.
+    /// When an episode ends.
     pub(crate) until: UntilName,
-    /// Without the shield (`None`), or with the one that assumes this; the vehicle under test carries it.
+    /// The contracts of the shields; `None` is no shield. The vehicle under test carries the shield.
     pub(crate) shields: Vec<Option<Contract>>,
-    /// Every random choice comes from here.
+    /// Seed of every random choice.
     pub(crate) seed: u64,
 }
 
-/// Who is under test.
+/// Which vehicles are under test.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ModeName {
     /// One driver for both vehicles: the paper's protocol
@@ -40,7 +40,7 @@ pub(crate) enum ModeName {
     Ego,
 }
 
-/// When an episode is over.
+/// When an episode ends.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum UntilName {
     /// When the first reaches its conflict point: the paper's protocol
@@ -61,10 +61,10 @@ pub(crate) enum ShieldName {
 }
 
 impl ShieldName {
-    /// The shields of a [`Plan`], which assume `contract`, by default the worst case.
+    /// The shields of a [`Plan`], with `contract`; the default is the worst case.
     ///
     /// # Errors
-    /// A contract is named and no shield is on.
+    /// There is a contract but no shield.
     pub(crate) fn shields(
         self,
         contract: Option<ContractName>,
@@ -79,13 +79,13 @@ impl ShieldName {
     }
 }
 
-/// What the shield assumes of the others.
+/// The shield's contract: what it assumes of the other vehicles.
 #[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ContractName {
-    /// Nobody's courtesy where routes cross
+    /// Others may cross at any time, whoever has the right of way
     #[default]
     WorstCase,
-    /// Who arrived first goes first
+    /// Whoever arrived first goes first
     AllWayStop,
 }
 
@@ -108,15 +108,15 @@ impl From<UntilName> for Until {
 }
 
 impl Plan {
-    /// The rows, split by split and driver by driver; `each` sees every row with its episodes.
+    /// The rows, ordered by split and driver. Calls `each` with every row and its episodes.
     ///
     /// # Errors
-    /// A selection is empty, a named driver cannot be fitted, or the user has asked to stop.
+    /// A selection is empty, a named driver cannot be fitted, or the user has interrupted the command.
     pub(crate) fn judge(
         &self,
         dataset: &Dataset,
-        mut each: impl FnMut(&Row, &[Drive<'_>]),
-    ) -> Result<Vec<Row>, Failure> {
+        mut each: impl FnMut(&TableRow, &[Drive<'_>]),
+    ) -> Result<Vec<TableRow>, Failure> {
         let blocks = self.selections.len() * self.shields.len();
         let bar = progress(blocks * self.contenders.len());
         let mut rows = Vec::new();
@@ -124,7 +124,7 @@ impl Plan {
             let rounds = selection.rounds(dataset);
             if rounds.iter().all(|round| round.judged.is_empty()) {
                 return Err(Failure::input(
-                    format!("there is nothing to judge on: no encounters in `{selection}`"),
+                    format!("no encounters in `{selection}`"),
                     "name another --split, or add its files to the folder",
                 ));
             }
@@ -133,7 +133,7 @@ impl Plan {
                 bar.set_message(format!("{selection}: {}", contender.name()));
                 match self.drive(contender, shield, &rounds) {
                     Ok(drives) => {
-                        let row = Row::of(self.label(contender, selection, shield), &drives);
+                        let row = TableRow::of(self.label(contender, selection, shield), &drives);
                         each(&row, &drives);
                         rows.push(row);
                     }
@@ -199,14 +199,14 @@ impl Plan {
     }
 }
 
-/// Every one of `outer` with every one of `inner`.
+/// The Cartesian product of `outer` and `inner`.
 fn product<'a, A, B>(outer: &'a [A], inner: &'a [B]) -> impl Iterator<Item = (&'a A, &'a B)> {
     outer
         .iter()
         .flat_map(move |a| inner.iter().map(move |b| (a, b)))
 }
 
-/// A bar on stderr, unseen where that is no terminal.
+/// A progress bar on stderr; hidden if stderr is not a terminal.
 fn progress(rows: usize) -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}");
     let bar = ProgressBar::new(rows as u64);

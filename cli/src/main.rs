@@ -25,7 +25,7 @@ use std::process::ExitCode;
 /// Without a command: the demo. It drives the embedded scenarios, prints the
 /// table and writes the report.
 ///
-/// Exit codes: 0 fine, 1 a check failed, 2 usage, 3 bad input, 4 interrupted.
+/// Exit codes: 0 success, 1 a check failed, 2 usage, 3 unusable input or output, 4 interrupted.
 #[derive(Parser)]
 #[command(version)]
 struct Cli {

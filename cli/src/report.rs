@@ -1,7 +1,7 @@
-//! The report: one HTML file that needs no network, with the table, replays and charts.
+//! The report: one HTML file with the table, replays and charts, which needs no network.
 //!
-//! The page draws itself from the JSON in it ([`model`]); a section for which
-//! there is no data stays out of model.
+//! The page draws its content from the JSON in it ([`model`]) and hides sections
+//! without data.
 
 mod cases;
 mod model;
@@ -14,7 +14,7 @@ use crate::failure::Failure;
 use crate::plural::Count;
 use cede_controller::Contract;
 use cede_data::{Dataset, Encounter, EncounterId, Role, Split, output};
-use cede_sim::evaluate::{Drive, Row};
+use cede_sim::evaluate::{Drive, TableRow};
 use cede_sim::transparency;
 use cede_train::run::curve::Point;
 use model::{Case, Episodes, Interventions, Page};
@@ -23,7 +23,7 @@ use std::collections::HashMap;
 use std::path::Path;
 use sweep::Panel;
 
-/// How one row's driver scored while it was trained.
+/// The learning curve of one row's driver.
 #[derive(Serialize)]
 pub(crate) struct Learned {
     pub(crate) driver: &'static str,
@@ -42,21 +42,21 @@ const SCRIPT: &str = concat!(
     include_str!("report/page/page.js"),
 );
 
-/// What the user typed.
+/// The command line.
 pub(crate) fn command() -> String {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     format!("cede {}", arguments.join(" "))
 }
 
-/// Gathers what the page shows, row by row.
+/// Collects the content of the page, row by row.
 pub(crate) struct Report {
     page: Page,
-    /// Places of the chosen encounters in the page's cases.
+    /// Index of each chosen encounter in the page's cases.
     chosen: HashMap<EncounterId, usize>,
 }
 
 impl Report {
-    /// A report on `dataset`; `command` is what the user would type to get it again.
+    /// A report on `dataset`; `command` is the command line that writes it.
     pub(crate) fn new(dataset: &Dataset, command: &str) -> Self {
         Self::showing(cases::choose(dataset), dataset, command)
     }
@@ -77,8 +77,8 @@ impl Report {
         }
     }
 
-    /// Adds a row of the table, and what its episodes show.
-    pub(crate) fn add(&mut self, row: &Row, drives: &[Drive<'_>]) {
+    /// Adds a row of the table with its episodes.
+    pub(crate) fn add(&mut self, row: &TableRow, drives: &[Drive<'_>]) {
         let driver = match row.shield.as_str() {
             "off" => row.driver.clone(),
             "on" => format!("{} + shield", row.driver),
@@ -104,10 +104,10 @@ impl Report {
         self.page.rows.push(row.clone());
     }
 
-    /// Adds what the shield would have allowed the recorded drivers of `dataset`, under contracts around `contract`.
+    /// Adds the shares of recorded steps in `dataset` that the shield accepts, under variants of `contract`.
     pub(crate) fn sweep(&mut self, dataset: &Dataset, contract: Contract) {
         let encounters: Vec<&Encounter> = dataset.encounters.iter().collect();
-        // The contracts that can be named are in range.
+        // Every contract with a name is valid.
         let rows = transparency::sweep(&encounters, contract).unwrap_or_default();
         self.page.sweep = Panel::all(&rows);
     }
@@ -123,7 +123,7 @@ impl Report {
         self.page.cases.retain(Case::was_driven);
         let data = serde_json::to_string(&self.page)
             .map_err(|error| Failure::input(error, "report this as a bug"))?;
-        // Inside a script element only `</` would end the data early.
+        // `</` would end the script element.
         let data = data.replace("</", "<\\/");
 
         let html = PAGE

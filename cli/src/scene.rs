@@ -1,4 +1,4 @@
-//! A site drawn from above: its map, what the vehicles drove, and where they met.
+//! A drawing of a site from above: its map, the vehicles' tracks, and the conflict points.
 
 use crate::failure::Failure;
 use crate::plural::Count;
@@ -8,16 +8,16 @@ use cede_data::{Dataset, Manoeuvre, output};
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Pixels a metre.
+/// Pixels per metre.
 const SCALE: f64 = 8.0;
-/// Room around the scene, m.
+/// Margin around the scene, m.
 const MARGIN: f64 = 3.0;
-/// Room for the legend below it, m.
+/// Height of the legend below it, m.
 const LEGEND: f64 = 8.0;
 /// Without a map, as much of the tracks' traffic is drawn, m.
 const WITHOUT_MAP: f64 = 1.0;
 
-/// What the colours mean, in the order of the legend.
+/// The meanings of the colours, in the order of the legend.
 const MANOEUVRES: [(Manoeuvre, &str, &str); 4] = [
     (Manoeuvre::Left, "left", "#c2410c"),
     (Manoeuvre::Straight, "straight", "#1d4ed8"),
@@ -44,7 +44,7 @@ fn svg(dataset: &Dataset) -> String {
     svg + "</svg>\n"
 }
 
-/// The part of the plane that is drawn: metres, north up.
+/// The visible part of the plane: metres, north up.
 struct View {
     low: [f64; 2],
     high: [f64; 2],
@@ -140,7 +140,7 @@ fn tracks(svg: &mut String, view: &View, dataset: &Dataset) {
         );
         let all = dataset.recordings.iter().flat_map(|r| &r.tracks);
         for track in all.filter(|track| dataset.site.manoeuvre(track) == manoeuvre) {
-            // Five states a second are smooth at this scale.
+            // Five states per second are enough at this scale.
             let path = view.path(track.states.iter().step_by(2).map(|s| [s.x, s.y]));
             let _ = writeln!(svg, "<path d=\"{path}\"/>");
         }

@@ -1,9 +1,41 @@
-//! Settings of a training, as the command line has them.
+//! Algorithms and settings on the command line.
 
 use crate::failure::Failure;
-use cede_train::run::{Algorithm, Settings};
+use cede_train::run::{Algorithm, TrainSettings};
+use clap::builder::PossibleValue;
 
-/// `name=word` as TOML, which wants quotes around a word.
+/// An algorithm by its name.
+#[derive(Clone, Copy)]
+pub(crate) struct AlgorithmName(pub(crate) Algorithm);
+
+impl clap::ValueEnum for AlgorithmName {
+    fn value_variants<'a>() -> &'a [Self] {
+        const ALL: [AlgorithmName; 5] = {
+            let [a, b, c, d, e] = Algorithm::ALL;
+            [
+                AlgorithmName(a),
+                AlgorithmName(b),
+                AlgorithmName(c),
+                AlgorithmName(d),
+                AlgorithmName(e),
+            ]
+        };
+        &ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.0.name()))
+    }
+}
+
+/// A row of `cede reproduce`: an algorithm with its settings.
+#[derive(Clone)]
+pub(crate) struct RowSettings {
+    pub(crate) algorithm: Algorithm,
+    pub(crate) settings: TrainSettings,
+}
+
+/// `name=word` as TOML: adds the quotes that a string needs.
 pub(crate) fn quoted(set: &str) -> String {
     match set.split_once('=') {
         Some((name, value)) if set.parse::<toml::Table>().is_err() => format!("{name}=\"{value}\""),
@@ -11,28 +43,35 @@ pub(crate) fn quoted(set: &str) -> String {
     }
 }
 
-/// `settings` with those replaced that `text`, which comes from `origin`, names in TOML.
-pub(crate) fn with(settings: &Settings, text: &str, origin: &str) -> Result<Settings, Failure> {
+/// `settings` with the values of `text` (TOML). `origin` names the source of `text` in errors.
+pub(crate) fn with(
+    settings: &TrainSettings,
+    text: &str,
+    origin: &str,
+) -> Result<TrainSettings, Failure> {
     let wrong = |error: toml::de::Error| {
         let problem = format!("{origin}: {}", error.to_string().trim_end());
         Failure::input(
             problem,
-            "see all settings and their defaults with --show-settings",
+            "--show-settings prints all settings and their defaults",
         )
     };
     let table: toml::Table = text.parse().map_err(wrong)?;
     settings.with(&table).map_err(wrong)
 }
 
-/// The rows of `cede reproduce` with their settings, those replaced that `sets` name, as in `apg.width=64`.
+/// The rows of `cede reproduce` with their settings, changed by `sets`, as in `apg.width=64`.
 ///
 /// # Errors
-/// A setting is not sound, or its row is not among `rows`.
-pub(crate) fn of_rows(
-    rows: &[Algorithm],
-    sets: &[String],
-) -> Result<Vec<(Algorithm, Settings)>, Failure> {
-    let mut settled: Vec<_> = rows.iter().map(|row| (*row, row.reproduction())).collect();
+/// A setting is unknown or out of its range, or its row is not among `rows`.
+pub(crate) fn of_rows(rows: &[Algorithm], sets: &[String]) -> Result<Vec<RowSettings>, Failure> {
+    let mut settled: Vec<RowSettings> = rows
+        .iter()
+        .map(|row| RowSettings {
+            algorithm: *row,
+            settings: row.reproduction(),
+        })
+        .collect();
     for set in sets {
         let (name, rest) = set.split_once('.').unwrap_or((set, ""));
         let known = Algorithm::ALL.iter().any(|known| known.name() == name);
@@ -43,24 +82,26 @@ pub(crate) fn of_rows(
                 mend,
             ));
         }
-        let Some((_, settings)) = settled.iter_mut().find(|(row, _)| row.name() == name) else {
+        let Some(row) = settled.iter_mut().find(|row| row.algorithm.name() == name) else {
             let rows: Vec<_> = rows.iter().map(|row| row.name()).collect();
             let (set, rows) = (format!("--set {set}"), rows.join(","));
             return Err(Failure::ignored(&set, &format!("--rows {rows}")));
         };
-        *settings = with(settings, &quoted(rest), "--set")?;
+        row.settings = with(&row.settings, &quoted(rest), "--set")?;
     }
-    let check = |(row, settings)| Ok((row, checked(settings)?));
-    settled.into_iter().map(check).collect()
+    for row in &settled {
+        check(&row.settings)?;
+    }
+    Ok(settled)
 }
 
-/// The settings, if a training can begin with them.
-pub(crate) fn checked(settings: Settings) -> Result<Settings, Failure> {
-    match settings.check() {
-        Ok(()) => Ok(settings),
-        Err(wrong) => Err(Failure::input(
-            wrong,
-            "see the settings with --show-settings",
-        )),
-    }
+/// Checks that every setting is in its range.
+///
+/// # Errors
+/// A setting is out of its range.
+pub(crate) fn check(settings: &TrainSettings) -> Result<(), Failure> {
+    let mend = "--show-settings prints all settings and their defaults";
+    settings
+        .check()
+        .map_err(|wrong| Failure::input(wrong, mend))
 }

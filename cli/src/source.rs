@@ -5,9 +5,9 @@ use cede_data::Dataset;
 use clap::builder::RangedU64ValueParser;
 use std::path::Path;
 
-/// Site of the recordings, where none is named.
+/// Default site of the recordings.
 const SITE: &str = "EP0";
-/// Number of synthetic encounters, where none is named.
+/// Default number of synthetic encounters.
 const ENCOUNTERS: usize = 1000;
 
 /// The options that name a data set.
@@ -30,7 +30,7 @@ pub(crate) fn at_least_one() -> RangedU64ValueParser<usize> {
 }
 
 impl Source {
-    /// Reads the recordings, or generates encounters from `seed`; there may be none.
+    /// Reads the recordings, or generates encounters from `seed`. The data set may be empty.
     ///
     /// # Errors
     /// An option belongs to the other kind of data, or the recordings cannot be used.
@@ -47,7 +47,7 @@ impl Source {
         Ok(Dataset::load(Path::new(&self.data), self.site())?)
     }
 
-    /// The same, where `seed` is that of the synthetic encounters alone and `option` gives it, by default `default`.
+    /// The same with the seed from `option`, which only synthetic encounters use; without it from `default`.
     ///
     /// # Errors
     /// As [`Source::load`].
@@ -63,7 +63,7 @@ impl Source {
         self.load(seed.unwrap_or(default))
     }
 
-    /// `option` is for synthetic data, and these are recorded.
+    /// The error for `option`, which needs synthetic data, with recorded data.
     fn for_synthetic(&self, option: &str) -> Failure {
         Failure::ignored(option, &format!("the recordings in {}", self.data))
     }
@@ -84,10 +84,10 @@ impl Source {
     }
 }
 
-/// The data set, if there are encounters in it.
+/// Checks that the data set contains encounters.
 ///
 /// # Errors
-/// There are none.
+/// The data set is empty.
 pub(crate) fn not_empty(dataset: &Dataset) -> Result<(), Failure> {
     if dataset.encounters.is_empty() {
         return Err(Failure::input(

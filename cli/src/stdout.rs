@@ -1,6 +1,5 @@
-//! What is printed: `print!`, `println!` and `eprintln!` as std's, but a reader that has seen enough (`| head`) is no
-//! failure. The command goes on, without printing, so that its files and its exit code are those it
-//! would have had.
+//! `print!`, `println!` and `eprintln!` that accept a closed pipe (`| head`). The command continues without
+//! printing, so that its files and its exit code do not depend on the reader.
 
 use std::fmt::Arguments;
 use std::io::{self, ErrorKind, Write};
@@ -17,19 +16,19 @@ macro_rules! println {
     ($($what:tt)*) => { print!("{}\n", format_args!($($what)*)) };
 }
 
-/// As std's, but where stderr cannot be written to, nothing is said.
+/// As std's, but ignores errors of stderr.
 macro_rules! eprintln {
     ($($what:tt)*) => { $crate::stdout::tell(format_args!($($what)*)) };
 }
 
 /// Prints a line on stderr.
 pub(crate) fn tell(what: Arguments<'_>) {
-    // There is no other place to complain at.
+    // There is no other stream to report this error to.
     let _ = writeln!(io::stderr(), "{what}");
 }
 
-/// Prints; where that is impossible for another reason than a closed pipe (a full disk), the program ends
-/// with exit code 3.
+/// Prints. If this fails for another reason than a closed pipe (for example a full disk), the program
+/// exits with code 3.
 pub(crate) fn write(what: Arguments<'_>) {
     match io::stdout().lock().write_fmt(what) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {

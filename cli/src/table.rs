@@ -1,10 +1,10 @@
-//! The table on stdout, with the paper's rows beside ours.
+//! The table on stdout, with the paper's rows for comparison.
 
 use crate::plural::Count;
-use cede_sim::evaluate::{Interval, Row};
+use cede_sim::evaluate::{ConfidenceInterval, TableRow};
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 
-/// What the paper's Table II prints for the site EP0: driver, split, n, priority accuracy,
+/// The paper's Table II for the site EP0: driver, split, n, priority accuracy,
 /// episode length error, collisions.
 pub(crate) const PAPER: [(&str, &str, usize, f64, f64, usize); 6] = [
     ("paper: BC", "train", 215, 0.7209, 0.5540, 1),
@@ -15,9 +15,9 @@ pub(crate) const PAPER: [(&str, &str, usize, f64, f64, usize); 6] = [
     ("paper: SACER-SVO", "test", 17, 0.9412, 0.3078, 0),
 ];
 
-/// The rows of `rows` in blocks of equal split, mode, end and shield; `paper` adds the paper's to
-/// those that follow its protocol.
-pub(crate) fn render(rows: &[Row], paper: bool) -> String {
+/// The rows of `rows` in blocks of equal split, mode, end and shield; `paper` adds the paper's
+/// rows to the blocks that follow its protocol.
+pub(crate) fn render(rows: &[TableRow], paper: bool) -> String {
     let mut table = Table::new();
     table
         .load_style(presets::ASCII_MARKDOWN)
@@ -57,12 +57,12 @@ pub(crate) fn render(rows: &[Row], paper: bool) -> String {
     text
 }
 
-fn block_of(row: &Row) -> (&str, &str, &str, &str) {
+fn block_of(row: &TableRow) -> (&str, &str, &str, &str) {
     (&row.split, &row.mode, &row.until, &row.shield)
 }
 
-fn heading(row: &Row) -> String {
-    let Row {
+fn heading(row: &TableRow) -> String {
+    let TableRow {
         split,
         mode,
         until,
@@ -74,7 +74,7 @@ fn heading(row: &Row) -> String {
     format!("{split}: {encounters}, {mode} mode, until {until}, shield {shield}")
 }
 
-fn cells(row: &Row) -> [String; 12] {
+fn cells(row: &TableRow) -> [String; 12] {
     [
         row.driver.clone(),
         row.n.to_string(),
@@ -111,7 +111,7 @@ fn percent(value: Option<f64>) -> String {
     number(value.map(|x| 100.0 * x), 1, " %")
 }
 
-fn share(value: Option<f64>, interval: Option<Interval>) -> String {
+fn share(value: Option<f64>, interval: Option<ConfidenceInterval>) -> String {
     let range = interval.map(|[low, high]| format!(" [{:.0}, {:.0}]", 100.0 * low, 100.0 * high));
     percent(value) + &range.unwrap_or_default()
 }

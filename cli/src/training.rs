@@ -1,42 +1,42 @@
-//! A training under way: its run, its learning curve, and its checkpoints.
+//! A training: its run, its learning curve, and its checkpoints.
 
 use crate::failure::Failure;
 use crate::interrupt;
 use cede_train::run::checkpoint::{Checkpoint, CheckpointError};
 use cede_train::run::curve::{Curve, Panel, Point};
-use cede_train::run::{Algorithm, Lessons, Report, Run, Settings};
+use cede_train::run::{Algorithm, Lessons, Report, Run, TrainSettings};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 /// Time between two checkpoints.
 const CHECKPOINT_EVERY: Duration = Duration::from_secs(30);
 
-/// What tells one training from another.
+/// What identifies a training.
 #[derive(Clone, PartialEq)]
 pub(crate) struct Identity {
-    /// SHA-256 of what it learns from.
+    /// SHA-256 of the data that it learns from.
     pub(crate) data: [u8; 32],
-    /// How it learns.
+    /// The algorithm.
     pub(crate) algorithm: Algorithm,
     /// Seed of every random choice.
     pub(crate) seed: u64,
     /// Its settings.
-    pub(crate) settings: Settings,
+    pub(crate) settings: TrainSettings,
 }
 
-/// A training under way.
+/// A training in progress.
 pub(crate) struct Training<'e> {
     identity: Identity,
-    /// Where checkpoints go.
+    /// Path of the checkpoint.
     checkpoint: PathBuf,
-    /// Where there is none, no curve is kept.
+    /// The encounters for the learning curve; without them there is no curve.
     panel: Option<Panel<'e>>,
     pub(crate) run: Run<'e>,
     pub(crate) curve: Curve,
 }
 
 impl<'e> Training<'e> {
-    /// A training that has not yet begun.
+    /// A new training.
     pub(crate) fn new(
         identity: Identity,
         lessons: &'e Lessons<'e>,
@@ -55,7 +55,7 @@ impl<'e> Training<'e> {
     /// The training that was saved to `checkpoint`.
     ///
     /// # Errors
-    /// The checkpoint cannot be used, or another training left it.
+    /// The checkpoint cannot be used, or belongs to another training.
     pub(crate) fn resume(
         identity: Identity,
         lessons: &'e Lessons<'e>,
@@ -64,19 +64,22 @@ impl<'e> Training<'e> {
     ) -> Result<Self, Failure> {
         let saved = Checkpoint::load(&checkpoint).map_err(|error| {
             let mend = match error {
-                CheckpointError::Read { .. } => "leave out --resume to begin anew",
-                CheckpointError::Content { .. } => "delete it, or leave out --resume to begin anew",
+                CheckpointError::Version { .. } => {
+                    "resume with the program that wrote it, or start again without --resume"
+                }
+                CheckpointError::Content { .. } => "delete it, or start again without --resume",
+                _ => "check the path, or start again without --resume",
             };
             Failure::input(error, mend)
         })?;
         let same = saved.data == identity.data
-            && saved.algorithm == identity.algorithm.name()
+            && saved.algorithm == identity.algorithm
             && saved.seed == identity.seed
             && saved.settings == identity.settings.text();
         if !same {
             return Err(Failure::input(
                 format!("{} belongs to another run", checkpoint.display()),
-                "give the same algorithm, data, seed and settings, or leave out --resume",
+                "give the same algorithm, data, seed and settings, or start again without --resume",
             ));
         }
         Ok(Self {
@@ -88,11 +91,11 @@ impl<'e> Training<'e> {
         })
     }
 
-    /// Goes on to the end; `each` sees every slice of work, and the point of the curve that is due
-    /// after it. What was done is saved now and then, and where the user asks to stop.
+    /// Trains to the end. Calls `each` after every slice of work, with the point of the curve that is
+    /// then due. Saves a checkpoint at intervals and when the user interrupts the command.
     ///
     /// # Errors
-    /// A checkpoint cannot be written, `each` fails, or the user has asked to stop.
+    /// A checkpoint cannot be written, `each` fails, or the user has interrupted the command.
     pub(crate) fn finish(
         &mut self,
         mut each: impl FnMut(&Report, &Run<'e>, Option<&Point>) -> Result<(), Failure>,
@@ -115,14 +118,14 @@ impl<'e> Training<'e> {
         Ok(())
     }
 
-    /// Saves what was done.
+    /// Saves a checkpoint.
     ///
     /// # Errors
     /// The checkpoint cannot be written.
     pub(crate) fn save(&self) -> Result<(), Failure> {
         let checkpoint = Checkpoint {
             data: self.identity.data,
-            algorithm: self.identity.algorithm.name().to_owned(),
+            algorithm: self.identity.algorithm,
             seed: self.identity.seed,
             settings: self.identity.settings.text(),
             progress: self.run.progress(),
@@ -131,7 +134,7 @@ impl<'e> Training<'e> {
         Ok(checkpoint.save(&self.checkpoint)?)
     }
 
-    /// Deletes the checkpoint of a run that is over: it has served.
+    /// Deletes the checkpoint, at the end of the training.
     pub(crate) fn clean(&self) {
         let _ = std::fs::remove_file(&self.checkpoint);
     }

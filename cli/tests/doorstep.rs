@@ -31,7 +31,7 @@ fn threads_are_capped_with_a_word_and_zero_means_all_cores() {
     let told = cede(&format!("evaluate {FEW} --driver replay --threads 999999")).success();
     assert!(
         stderr(&told).contains("--threads 999999: ")
-            && stderr(&told).contains(" are used, 4 a core"),
+            && stderr(&told).contains(" are used, 4 per core"),
         "{}",
         stderr(&told)
     );

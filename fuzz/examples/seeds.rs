@@ -142,7 +142,7 @@ fn checkpoint() -> Result<Checkpoint> {
     run.advance();
     Ok(Checkpoint {
         data: [3; 32],
-        algorithm: "bc".to_owned(),
+        algorithm: Algorithm::Bc,
         seed: 1,
         settings: String::new(),
         progress: run.progress(),

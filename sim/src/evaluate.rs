@@ -8,7 +8,7 @@ mod row;
 mod selection;
 
 pub use clearance::clearance;
-pub use row::{Interval, Label, Row};
+pub use row::{ConfidenceInterval, Label, TableRow};
 pub use selection::{Round, Selection, UnknownSelection};
 
 use crate::driver::DriverFactory;
@@ -135,7 +135,7 @@ mod tests {
             .collect()
     }
 
-    fn rows(threads: usize, mode: Mode<'_>) -> Vec<Row> {
+    fn rows(threads: usize, mode: Mode<'_>) -> Vec<TableRow> {
         let encounters = encounters();
         let references: Vec<&Encounter> = encounters.iter().collect();
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
@@ -147,7 +147,7 @@ mod tests {
                 seed: 1,
             };
             let drives = evaluate(&*factory, &references, protocol);
-            Row::of(label(baseline.name()), &drives)
+            TableRow::of(label(baseline.name()), &drives)
         };
         pool.unwrap().install(|| Baseline::ALL.map(row).to_vec())
     }
@@ -176,7 +176,7 @@ mod tests {
 
     #[test]
     fn an_empty_split_has_a_row_without_shares() {
-        let row = Row::of(label("replay"), &[]);
+        let row = TableRow::of(label("replay"), &[]);
         assert_eq!((row.n, row.collisions), (0, 0));
         assert_eq!(row.priority_accuracy, None);
         assert_eq!(row.episode_length_error, None);

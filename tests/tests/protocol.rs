@@ -3,11 +3,11 @@
 use cede_data::Dataset;
 use cede_sim::driver::Baseline;
 use cede_sim::episode::Until;
-use cede_sim::evaluate::{Label, Mode, Protocol, Row, Selection, evaluate};
+use cede_sim::evaluate::{Label, Mode, Protocol, Selection, TableRow, evaluate};
 use cede_tests::interaction;
 
 /// The row of `baseline` on `selection` in the paper's protocol.
-fn row(dataset: &Dataset, baseline: Baseline, selection: Selection) -> Row {
+fn row(dataset: &Dataset, baseline: Baseline, selection: Selection) -> TableRow {
     let protocol = Protocol {
         mode: Mode::Joint,
         until: Until::Conflict,
@@ -25,7 +25,7 @@ fn row(dataset: &Dataset, baseline: Baseline, selection: Selection) -> Row {
         until: "conflict",
         shield: "off",
     };
-    Row::of(label, &drives)
+    TableRow::of(label, &drives)
 }
 
 #[test]

@@ -6,7 +6,8 @@
 #[path = "../../sim/benches/processor/mod.rs"]
 mod processor;
 
-use cede_train::algorithm::sac::learner::{Learner, Rates};
+use cede_train::algorithm::sac::Rates;
+use cede_train::algorithm::sac::learner::Learner;
 use cede_train::driving::replay::Batch;
 use cede_train::nn::matmul::{Into, Matrix, multiply};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};

@@ -1,4 +1,4 @@
-//! `cede data`: what is in recordings, and which encounters they hold.
+//! `cede data`: the content of recordings, and their encounters.
 
 mod extract;
 mod inspect;
@@ -13,7 +13,7 @@ use clap::Subcommand;
 pub(crate) enum Data {
     /// Find the encounters in recorded tracks and write them as CSV
     Extract(extract::Args),
-    /// Print what is in the recordings and draw the scene
+    /// Print the content of the recordings and draw the scene
     Inspect(inspect::Args),
     /// Write synthetic recordings, maps and scene descriptions
     Synthesize(synthesize::Args),
@@ -30,10 +30,13 @@ impl Data {
     }
 }
 
-/// Says on stderr which files were not read.
+/// Lists the files that were not read on stderr.
 fn name_passed_over(dataset: &Dataset) {
     for path in &dataset.passed_over {
-        eprintln!("passed over, as it holds pedestrians: {}", path.display());
+        eprintln!(
+            "skipped, because it contains pedestrians: {}",
+            path.display()
+        );
     }
 }
 

@@ -1,4 +1,4 @@
-//! The bare `cede`: the embedded scenarios, driven, tabulated and reported.
+//! `cede` without a command: drives the embedded scenarios, prints the table and writes the report.
 
 use crate::drivers::Drivers;
 use crate::failure::Failure;
@@ -13,7 +13,7 @@ use std::path::Path;
 
 /// Encounters of the demo; the drivers are judged on the test split of them.
 const ENCOUNTERS: usize = 1000;
-/// Where the report goes.
+/// Path of the report.
 const REPORT: &str = "out/report.html";
 /// Seed of the demo's encounters.
 const SEED: u64 = 1;

@@ -1,4 +1,4 @@
-//! `cede evaluate`: drivers on recorded or synthetic encounters, and the table.
+//! `cede evaluate`: judges drivers on recorded or synthetic encounters and prints the table.
 
 mod episodes;
 
@@ -11,7 +11,7 @@ use crate::table;
 use crate::threads::Threads;
 use cede_data::{Dataset, Split};
 use cede_sim::driver::Baseline;
-use cede_sim::evaluate::{Row, Selection};
+use cede_sim::evaluate::{Selection, TableRow};
 use episodes::EpisodeFile;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -25,25 +25,25 @@ pub(crate) struct Args {
     #[arg(long, default_value = "all", value_name = "NAME[,NAME…]")]
     driver: Drivers,
     /// Encounters to judge on: train, validation, test, all, leave-one-file-out, separated by
-    /// commas; by default the first three, as far as they are there
+    /// commas; by default those of the first three that contain encounters
     #[arg(long, value_delimiter = ',', value_name = "NAME[,NAME…]")]
     split: Vec<Selection>,
-    /// Who is under test
+    /// Which vehicles are under test
     #[arg(long, value_enum, default_value_t = ModeName::Joint)]
     mode: ModeName,
     /// In ego mode, the driver of the other vehicle [default: replay]
     #[arg(long, value_name = "NAME")]
     partner: Option<Baseline>,
-    /// When an episode is over
+    /// When an episode ends
     #[arg(long, value_enum, default_value_t = UntilName::Conflict)]
     until: UntilName,
     /// Whether the vehicle under test carries the shield
     #[arg(long, value_enum, default_value_t = ShieldName::Off)]
     shield: ShieldName,
-    /// What the shield assumes of the others [default: worst-case]
+    /// The shield's contract: what it assumes of the other vehicles [default: worst-case]
     #[arg(long, value_enum)]
     contract: Option<ContractName>,
-    /// The policy of driver `cede`
+    /// The policy of the driver `cede`
     #[arg(long, value_name = "FILE.cede")]
     weights: Option<PathBuf>,
     /// Seed of every random choice
@@ -54,7 +54,7 @@ pub(crate) struct Args {
     /// Print one JSON object instead of the table; shares are fractions
     #[arg(long)]
     json: bool,
-    /// Also write one line an episode, to a file that ends in .csv or .parquet
+    /// Also write one line per episode to a .csv or .parquet file
     #[arg(long, value_name = "FILE")]
     episodes: Option<EpisodeFile>,
     /// Also write the report: one HTML file with replays and charts
@@ -62,13 +62,13 @@ pub(crate) struct Args {
     report: Option<PathBuf>,
 }
 
-/// What `--json` prints.
+/// The output of `--json`.
 #[derive(Serialize)]
 struct Output<'a> {
     data: &'a str,
     site: &'a str,
     seed: u64,
-    rows: &'a [Row],
+    rows: &'a [TableRow],
 }
 
 /// Runs the command.
@@ -106,7 +106,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 }
 
 impl Args {
-    /// What is judged; without selections those that are present are meant.
+    /// The plan of the evaluation. Without selections it takes all splits that contain files.
     fn plan(&self) -> Result<Plan, Failure> {
         if self.partner.is_some() && self.mode == ModeName::Joint {
             return Err(Failure::ignored("--partner", "--mode joint"));
@@ -129,7 +129,7 @@ impl Args {
         })
     }
 
-    fn print(&self, dataset: &Dataset, rows: &[Row]) -> Result<(), Failure> {
+    fn print(&self, dataset: &Dataset, rows: &[TableRow]) -> Result<(), Failure> {
         let site = dataset.site.name.as_str();
         if self.json {
             let output = Output {
@@ -148,7 +148,7 @@ impl Args {
     }
 }
 
-/// The splits of which the folder holds files.
+/// The splits that contain files.
 fn present(dataset: &Dataset) -> Vec<Selection> {
     [Split::Train, Split::Validation, Split::Test]
         .into_iter()

@@ -7,7 +7,7 @@ use cede_formats::{onnx, safetensors};
 use clap::ValueEnum;
 use std::path::PathBuf;
 
-/// What `cede help export` says beside the options.
+/// The text below the options in `cede help export`.
 const HELP: &str = "\
 ONNX: raw features in, accelerations (m/s²) out; normalisation and squashing are in the graph. Metadata:
 cede.features, cede.feature_names, cede.perspective, cede.provenance_sha256.

@@ -10,7 +10,7 @@ use cede_formats::onnx::{self, ImportError, Told};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::path::PathBuf;
 
-/// What `cede help import` says beside the options.
+/// The text below the options in `cede help import`.
 fn help() -> String {
     let sets = FeatureSet::ALL.map(|set| format!("{} {}", set.name(), set.count()));
     format!("\
@@ -42,10 +42,10 @@ pub(crate) struct Args {
     /// The policy, ONNX
     #[arg(long, value_name = "FILE")]
     onnx: PathBuf,
-    /// Features that the network is told; by default what the file's metadata say
+    /// The network's features; by default those of the file's metadata
     #[arg(long, value_name = "SET", value_parser = feature_sets())]
     features: Option<FeatureSet>,
-    /// Whose commands it gives; by default what the file's metadata say, else ego
+    /// Whose commands the outputs are; by default that of the file's metadata, else ego
     #[arg(long, value_name = "WHOSE", value_parser = perspectives())]
     perspective: Option<Perspective>,
     /// The weights file to write
@@ -97,11 +97,11 @@ fn mend(error: &ImportError) -> &'static str {
         }
         ImportError::Outputs { .. } => "export the means of the commands alone",
         ImportError::Weights(_) => "keep weights within ± 1000 and normalise the features",
-        _ => "see `cede help import` for the graphs that are understood",
+        _ => "see `cede help import` for the supported graphs",
     }
 }
 
-/// What was made of the graph, with the range in which it hears of each feature.
+/// A summary of the imported network, with the range in which each feature has an effect.
 fn describe(policy: &Policy<'_>) {
     let weights = policy.weights();
     println!(

@@ -9,7 +9,7 @@ use crate::report::{Report, command};
 use cede_controller::Contract;
 use cede_data::{Dataset, Encounter};
 use cede_sim::episode::Until;
-use cede_sim::evaluate::{Label, Mode, Protocol, Row, evaluate};
+use cede_sim::evaluate::{Label, Mode, Protocol, TableRow, evaluate};
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -23,31 +23,32 @@ pub(crate) struct Args {
     site: String,
     /// Tracks of the left-turner and of the other; by default the two that came closest in time
     #[arg(long, value_name = "LEFT,OTHER")]
-    pair: Option<Pair>,
-    /// Who drives both vehicles, separated by commas; those that learn do so from this recording
+    pair: Option<TrackPair>,
+    /// Drivers of both vehicles, separated by commas; drivers that learn are fitted to this recording
     #[arg(long, default_value = "replay", value_name = "NAME[,NAME…]")]
     driver: Drivers,
     /// Whether both vehicles carry the shield
     #[arg(long, value_enum, default_value_t = ShieldName::Off)]
     shield: ShieldName,
-    /// What the shield assumes of the others [default: worst-case]
+    /// The shield's contract: what it assumes of the other vehicles [default: worst-case]
     #[arg(long, value_enum)]
     contract: Option<ContractName>,
-    /// The policy of driver `cede`
+    /// The policy of the driver `cede`
     #[arg(long, value_name = "FILE.cede")]
     weights: Option<PathBuf>,
-    /// Where the page goes
+    /// Path of the page (HTML)
     #[arg(long, default_value = "out/replay.html", value_name = "FILE")]
     out: PathBuf,
 }
 
+/// The track numbers of an encounter's vehicles.
 #[derive(Clone, Copy)]
-struct Pair {
+struct TrackPair {
     left: u32,
     other: u32,
 }
 
-impl FromStr for Pair {
+impl FromStr for TrackPair {
     type Err = &'static str;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
@@ -80,7 +81,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Drives `encounter`, prints how it went, and adds it to `report`.
+/// Drives `encounter`, prints the result, and adds it to `report`.
 fn drive(
     contender: &Contender,
     shield: Option<Contract>,
@@ -104,7 +105,7 @@ fn drive(
         until: "cleared",
         shield: if shield.is_some() { "on" } else { "off" },
     };
-    let row = Row::of(label, &drives);
+    let row = TableRow::of(label, &drives);
     for drive in &drives {
         numbers::drive(&row, drive);
     }
@@ -113,7 +114,7 @@ fn drive(
 }
 
 impl Args {
-    /// What shows the same encounter again.
+    /// The command line that shows the same encounter.
     fn command(&self, encounter: &Encounter) -> String {
         let (left, other) = (encounter.id.left, encounter.id.other);
         let pair = match self.pair {
@@ -127,20 +128,22 @@ impl Args {
         let all = || dataset.encounters.iter();
         let chosen = match self.pair {
             None => all().min_by(|a, b| a.pet.total_cmp(&b.pet)),
-            Some(Pair { left, other }) => all().find(|e| (e.id.left, e.id.other) == (left, other)),
+            Some(TrackPair { left, other }) => {
+                all().find(|e| (e.id.left, e.id.other) == (left, other))
+            }
         };
         chosen.ok_or_else(|| {
             let pairs = all().map(|e| format!("{},{}", e.id.left, e.id.other));
             let pairs = pairs.collect::<Vec<_>>().join("  ");
             let file = self.file.display();
             match self.pair {
-                Some(Pair { left, other }) => Failure::input(
-                    format!("{file}: tracks {left} and {other} do not make an encounter"),
+                Some(TrackPair { left, other }) => Failure::input(
+                    format!("{file}: tracks {left} and {other} are not an encounter"),
                     format!("name one of these with --pair: {pairs}"),
                 ),
                 None => Failure::input(
-                    format!("{file}: no left-turner meets anybody here"),
-                    "name another file, or the site whose description fits with --site",
+                    format!("{file}: it contains no encounter of a left-turner"),
+                    "name another file, or with --site the site that it was recorded at",
                 ),
             }
         })

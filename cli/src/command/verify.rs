@@ -17,19 +17,19 @@ use clap::Subcommand;
 pub(crate) enum Verify {
     /// Does an input of the property's box give an unsafe output of the network?
     Network(network::Network),
-    /// Does the policy have the properties that are claimed of it?
+    /// Does the policy have its claimed properties?
     Policy(policy::Policy),
-    /// Where can policy, shield and kinematics get to in an encounter?
+    /// Which states can policy, shield and kinematics reach in an encounter?
     Reach(reach::Reach),
     /// How far can rounding move the shield's margins?
     Margins(margins::Margins),
     /// Do the steps of the shield's theorem hold, by an SMT solver?
     Lemmas(lemmas::Lemmas),
-    /// Checks a certificate with code that shares nothing with the prover's.
+    /// Checks a certificate, with code that is independent of the prover.
     Check(check::Check),
-    /// What would the shield have allowed recorded drivers?
+    /// Which share of recorded steps does the shield accept?
     Shield(shield::Shield),
-    /// Does a shielded vehicle survive among others that do their worst?
+    /// Do shielded vehicles stay free of collisions among adversaries?
     Campaign(campaign::Campaign),
 }
 

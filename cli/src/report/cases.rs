@@ -6,14 +6,14 @@ use cede_data::{Dataset, Encounter, Role, Split};
 /// The paper's case studies at its site EP0: file, left-turner, other.
 const PAPER: [(u16, u32, u32); 3] = [(7, 25, 26), (7, 49, 48), (7, 57, 61)];
 
-/// Of each split, kind and outcome so many.
+/// Number of encounters for each split, kind and outcome.
 const OF_EACH: usize = 2;
-/// Shorter encounters (steps) show little.
+/// Minimum length (steps).
 const SHORTEST: u32 = 50;
-/// Longer ones (steps) are mostly waiting.
+/// Maximum length (steps); longer encounters consist mostly of waiting.
 const LONGEST: u32 = 200;
 
-/// The paper's cases, as far as they are there, and the closest encounters of each class.
+/// The paper's cases in the data, and the closest encounters of each class.
 pub(super) fn choose(dataset: &Dataset) -> Vec<&Encounter> {
     let mut chosen: Vec<&Encounter> = Vec::new();
     if dataset.site.name == "EP0" {

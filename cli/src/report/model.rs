@@ -1,4 +1,4 @@
-//! What the page draws, as it stands in the page's JSON.
+//! The content of the page, as its JSON.
 
 use super::sweep::Panel;
 use super::why::{Class, words};
@@ -8,14 +8,14 @@ use cede_controller::kinematics::State;
 use cede_data::lanelet::LineKind;
 use cede_data::{Encounter, EncounterId, Participant, Role, lanelet};
 use cede_sim::episode::{End, Episode};
-use cede_sim::evaluate::{Drive, Row};
+use cede_sim::evaluate::{Drive, TableRow};
 use cede_sim::metrics::{recorded_states, svo_series};
 use cede_train::driving::judge::Score;
 use cede_train::run::curve::Point;
 use serde::Serialize;
 use std::collections::HashSet;
 
-/// At most so many dots are drawn for the shield.
+/// Maximum number of dots for the shield's interventions.
 const MOST_DOTS: usize = 4000;
 
 /// The whole page.
@@ -25,7 +25,7 @@ pub(super) struct Page {
     pub(super) provenance: String,
     /// Names of the drivers in the order of their colours.
     pub(super) drivers: Vec<String>,
-    pub(super) rows: Vec<Row>,
+    pub(super) rows: Vec<TableRow>,
     pub(super) paper: Vec<PaperRow>,
     pub(super) map: Map,
     pub(super) cases: Vec<Case>,
@@ -36,7 +36,7 @@ pub(super) struct Page {
 }
 
 impl Page {
-    /// Gives `driver` a colour, if it has none.
+    /// Assigns a colour to `driver`, unless it has one.
     pub(super) fn name(&mut self, driver: &str) {
         if self.drivers.iter().all(|known| known != driver) {
             self.drivers.push(driver.to_owned());
@@ -44,7 +44,7 @@ impl Page {
     }
 }
 
-/// A row that the paper prints, with the names of our rows' fields.
+/// A row of the paper, with the field names of [`TableRow`].
 #[derive(Serialize)]
 pub(super) struct PaperRow {
     driver: &'static str,
@@ -119,7 +119,7 @@ struct Vehicle {
     conflict_s: f64,
 }
 
-/// How both vehicles went along their routes, step by step.
+/// The motion of both vehicles along their routes, step by step.
 #[derive(Serialize)]
 struct Motion {
     first: Option<&'static str>,
@@ -280,12 +280,12 @@ fn milli(value: f32) -> f64 {
     (f64::from(value) * 1000.0).round() / 1000.0
 }
 
-/// Rounded to hundredths: what can be seen, in a third of the bytes.
+/// Rounded to hundredths, which is enough for drawing and takes a third of the bytes.
 fn centi(value: f64) -> f64 {
     (value * 100.0).round() / 100.0
 }
 
-/// How a row's driver scored while it was trained, point by point.
+/// The learning curve of a row's driver, point by point.
 #[derive(Serialize)]
 pub(super) struct Curve {
     driver: &'static str,
@@ -329,13 +329,13 @@ impl Series {
     }
 }
 
-/// How close a driver's episodes came.
+/// The distances in time in a driver's episodes.
 #[derive(Serialize)]
 pub(super) struct Episodes {
     driver: String,
     block: String,
     n: usize,
-    /// Of the episodes in which both arrived, s, ascending.
+    /// PET (s) of the episodes in which both vehicles arrived, ascending.
     pet: Vec<f64>,
     /// Of the episodes in which the two would have touched, s, ascending.
     ttc: Vec<f64>,
@@ -344,7 +344,7 @@ pub(super) struct Episodes {
 }
 
 impl Episodes {
-    pub(super) fn of(driver: &str, row: &Row, drives: &[Drive<'_>]) -> Self {
+    pub(super) fn of(driver: &str, row: &TableRow, drives: &[Drive<'_>]) -> Self {
         let pet = |drive: &Drive<'_>| match drive.episode.arrivals {
             [Some(left), Some(other)] => Some(f64::from((left - other).abs()) * 0.1),
             _ => None,
@@ -363,7 +363,7 @@ impl Episodes {
     }
 }
 
-fn block(row: &Row) -> String {
+fn block(row: &TableRow) -> String {
     format!("{}, {}, until {}", row.split, row.mode, row.until)
 }
 
@@ -380,15 +380,15 @@ pub(super) struct Interventions {
     block: String,
     /// Where, and why.
     points: Vec<([f64; 2], Class)>,
-    /// How often each class of reasons, the most frequent first.
+    /// The frequency of each class of reasons, in descending order.
     classes: Vec<(Class, usize)>,
     overruled: usize,
     steps: usize,
 }
 
 impl Interventions {
-    /// `None` if the shield never acted.
-    pub(super) fn of(driver: &str, row: &Row, drives: &[Drive<'_>]) -> Option<Self> {
+    /// `None` if the shield never intervened.
+    pub(super) fn of(driver: &str, row: &TableRow, drives: &[Drive<'_>]) -> Option<Self> {
         let mut points = Vec::new();
         let mut classes: Vec<(Class, usize)> = Vec::new();
         let mut steps = 0;
@@ -413,7 +413,7 @@ impl Interventions {
         }
         classes.sort_by_key(|&(_, count)| std::cmp::Reverse(count));
         let overruled = points.len();
-        // Evenly thinned, so that all files are seen.
+        // Thinned evenly, so that dots of all files remain.
         let every = overruled / MOST_DOTS + 1;
         let points = points.into_iter().step_by(every).collect();
         (overruled > 0).then(|| Self {

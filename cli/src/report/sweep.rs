@@ -1,4 +1,4 @@
-//! What the shield would have allowed recorded drivers, over two numbers of the contract.
+//! The share of recorded steps that the shield accepts, as a function of two values of the contract.
 
 use cede_controller::ConflictKind;
 use cede_data::Role;
@@ -10,14 +10,14 @@ use serde::Serialize;
 pub(super) struct Panel {
     title: String,
     steps: u64,
-    /// The share that must be accepted under the worst-case contract, of both roles together.
+    /// The share that must be accepted under the worst-case contract, for both roles together.
     bar: f64,
-    /// The other's acceleration, the ego's braking (m/s²), and the share of steps that is accepted.
+    /// The other's acceleration, the ego's braking (m/s²), and the share of accepted steps.
     cells: Vec<(f32, f32, f64)>,
 }
 
 impl Panel {
-    /// A panel for each kind that has a bar, and each role, of `rows`.
+    /// A panel of `rows` for each kind with a required share, and each role.
     pub(super) fn all(rows: &[Swept]) -> Vec<Self> {
         let kinds = [
             ("Crossing", ConflictKind::Crossing, 0.995),

@@ -1,10 +1,10 @@
-//! Why the shield acted, for people.
+//! The shield's reasons, in words.
 
 use cede_controller::{Cause, Reason};
 use cede_data::Role;
 use serde::Serialize;
 
-/// What made the shield act, in classes that can be counted.
+/// Classes of reasons for an intervention.
 #[derive(Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Class {
@@ -14,14 +14,14 @@ pub(crate) enum Class {
     Occupied,
     /// There is no safe gap ahead of the other in its lane.
     Entry,
-    /// There is hardly room to stop.
+    /// The distance is just enough to stop.
     Stop,
-    /// Nothing was safe.
+    /// No command was safe.
     Fallback,
 }
 
 impl Class {
-    /// The class of `cause`; `None` if the driver was not overruled.
+    /// The class of `cause`; `None` if the shield did not deviate from the driver's command.
     pub(crate) fn of(cause: Cause) -> Option<Self> {
         match cause {
             Cause::Policy => None,

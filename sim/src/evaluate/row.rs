@@ -12,11 +12,11 @@ use std::collections::BTreeSet;
 const CRITICAL_TTC: f64 = 1.5;
 
 /// A 95 % confidence interval: low and high end.
-pub type Interval = [f64; 2];
+pub type ConfidenceInterval = [f64; 2];
 
 /// A row of the table. Shares are fractions; what cannot be told from the episodes is `None`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct TableRow {
     /// Name of the driver.
     pub driver: String,
     /// Name of the split.
@@ -34,21 +34,21 @@ pub struct Row {
     /// Share of episodes in which the recorded vehicle arrived first.
     pub priority_accuracy: Option<f64>,
     /// Its Wilson interval.
-    pub priority_accuracy_interval: Option<Interval>,
+    pub priority_accuracy_interval: Option<ConfidenceInterval>,
     /// Mean of |l − l_GT| / l_GT.
     pub episode_length_error: Option<f64>,
     /// Its interval by the normal approximation.
-    pub episode_length_error_interval: Option<Interval>,
+    pub episode_length_error_interval: Option<ConfidenceInterval>,
     /// Mean of |l − l_GT| in seconds.
     pub episode_length_error_s: Option<f64>,
     /// Episodes that ended in a collision.
     pub collisions: usize,
     /// Wilson interval of their share.
-    pub collision_share_interval: Option<Interval>,
+    pub collision_share_interval: Option<ConfidenceInterval>,
     /// Episodes that ended in a time-out.
     pub time_outs: usize,
     /// Wilson interval of their share.
-    pub time_out_share_interval: Option<Interval>,
+    pub time_out_share_interval: Option<ConfidenceInterval>,
     /// Root mean square position error in metres after 1 s.
     pub position_rmse_1s: Option<f64>,
     /// The same after 3 s.
@@ -84,7 +84,7 @@ pub struct Label<'a> {
     pub shield: &'a str,
 }
 
-impl Row {
+impl TableRow {
     /// Gathers `drives` under `label`.
     #[must_use]
     pub fn of(label: Label<'_>, drives: &[Drive<'_>]) -> Self {

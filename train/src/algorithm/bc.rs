@@ -1,9 +1,9 @@
-//! Behaviour cloning: what the recorded drivers did, learned as a function of what they saw.
+//! Behaviour cloning: the recorded accelerations as a function of the recorded observations.
 //!
-//! The paper's first baseline: a deterministic joint policy, fitted to the
-//! recorded accelerations by least squares. It never sees its own mistakes.
+//! The paper's first baseline: a deterministic joint policy, fitted by least
+//! squares. It learns from recorded states only, not from states that it reaches itself.
 
-use crate::driving::inputs::Inputs;
+use crate::driving::inputs::{FeatureSetName, Inputs};
 use crate::driving::policy_view::PolicyView;
 use crate::nn::adam::Adam;
 use crate::nn::network::{Delta, Network, Tape};
@@ -14,16 +14,16 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 
-/// How behaviour cloning learns.
+/// Settings of behaviour cloning.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Settings {
-    /// What the network is told; the paper's eight numbers by default.
-    #[serde(with = "crate::driving::inputs::by_name")]
+pub struct BcSettings {
+    /// The network's inputs; the paper's eight numbers by default.
+    #[serde(with = "FeatureSetName")]
     pub features: FeatureSet,
     /// Number of updates.
     pub updates: u32,
-    /// Steps of the record in a batch.
+    /// Recorded steps in a batch.
     pub batch: usize,
     /// Width of the three hidden layers: a multiple of 16 up to 128.
     pub width: usize,
@@ -31,7 +31,7 @@ pub struct Settings {
     pub rate: f32,
 }
 
-impl Default for Settings {
+impl Default for BcSettings {
     fn default() -> Self {
         Self {
             features: FeatureSet::Raw,
@@ -43,10 +43,10 @@ impl Default for Settings {
     }
 }
 
-/// What a run carries from one update to the next.
+/// The state of a run between two updates; a checkpoint stores it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Progress {
-    settings: Settings,
+pub struct BcProgress {
+    settings: BcSettings,
     inputs: Inputs,
     network: Network,
     adam: Adam,
@@ -54,10 +54,10 @@ pub struct Progress {
     update: u32,
 }
 
-/// A training run.
+/// A training run of behaviour cloning.
 pub struct Bc {
-    progress: Progress,
-    /// Network inputs of every recorded step, and the accelerations of both (share of the limit).
+    progress: BcProgress,
+    /// For every recorded step the network's inputs and both accelerations (as shares of the limit).
     rows: Vec<(Vec<f32>, [f32; 2])>,
     tape: Tape,
     delta: Delta,
@@ -66,9 +66,9 @@ pub struct Bc {
 }
 
 impl Bc {
-    /// A run over the records of `models` that has not yet begun.
+    /// A new run over the records of `models`.
     #[must_use]
-    pub fn new(settings: Settings, models: &[ObservationModel<'_>], seed: u64) -> Self {
+    pub fn new(settings: BcSettings, models: &[ObservationModel<'_>], seed: u64) -> Self {
         let mut random = Pcg64::seed_from_u64(seed);
         let lefts: Vec<_> = models
             .iter()
@@ -78,7 +78,7 @@ impl Bc {
         let inputs = Inputs::fit(settings.features, &lefts);
         let (i, w) = (settings.features.count(), settings.width);
         let network = Network::new(&[i, w, w, w, 4], &mut random);
-        let progress = Progress {
+        let progress = BcProgress {
             adam: Adam::new(network.parameters().len()),
             settings,
             inputs,
@@ -91,7 +91,7 @@ impl Bc {
 
     /// The run that `progress` was taken from, over the same encounters.
     #[must_use]
-    pub fn resume(progress: Progress, models: &[ObservationModel<'_>]) -> Self {
+    pub fn resume(progress: BcProgress, models: &[ObservationModel<'_>]) -> Self {
         let rows = models
             .iter()
             .flat_map(|model| examples(model, &progress.inputs))
@@ -106,13 +106,13 @@ impl Bc {
         }
     }
 
-    /// All that a resumed run needs to go on bit for bit.
+    /// The state from which [`Bc::resume`] continues with the same bits.
     #[must_use]
-    pub fn progress(&self) -> &Progress {
+    pub fn progress(&self) -> &BcProgress {
         &self.progress
     }
 
-    /// Updates done, and all there are.
+    /// Updates done, and their total number.
     #[must_use]
     pub fn updates(&self) -> (u64, u64) {
         (
@@ -121,7 +121,7 @@ impl Bc {
         )
     }
 
-    /// The driver as it is.
+    /// The current policy.
     #[must_use]
     pub fn view(&self) -> PolicyView<'_> {
         PolicyView {
@@ -131,11 +131,11 @@ impl Bc {
         }
     }
 
-    /// One update; the mean squared error of the batch, as a share of the limit's square, or `None`
-    /// when all updates are done or there is nothing to learn from.
+    /// One update. Returns the mean squared error of the batch, as a share of the square of the
+    /// limit, or `None` if all updates are done or there are no records.
     pub fn update(&mut self) -> Option<f32> {
         let progress = &mut self.progress;
-        let Settings {
+        let BcSettings {
             updates,
             batch,
             rate,
@@ -165,7 +165,8 @@ impl Bc {
     }
 }
 
-/// Mean squared error of the squashed means, and its derivatives with respect to the outputs.
+/// The mean squared error of the squashed means; `by_output` receives its derivatives with respect
+/// to the outputs.
 fn squared_error(output: &[f32], labels: &[[f32; 2]], by_output: &mut Vec<f32>) -> f32 {
     let share = 1.0 / (2 * labels.len()) as f32;
     let mut total = 0.0;
@@ -185,6 +186,7 @@ fn squared_error(output: &[f32], labels: &[[f32; 2]], by_output: &mut Vec<f32>) 
     total
 }
 
+/// The network's inputs and the labels of every recorded step.
 fn examples(model: &ObservationModel<'_>, inputs: &Inputs) -> Vec<(Vec<f32>, [f32; 2])> {
     let lefts = model.recorded().step_by(2).enumerate();
     let rows = lefts.map(|(step, pair)| {
@@ -202,11 +204,11 @@ fn examples(model: &ObservationModel<'_>, inputs: &Inputs) -> Vec<(Vec<f32>, [f3
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::nn::network::tests::{assert_gradient, differences, wide};
+    use crate::nn::finite_differences::{assert_gradient, differences, wide};
     use cede_data::Dataset;
 
     #[test]
-    fn the_losss_gradient_agrees_with_finite_differences() {
+    fn the_gradient_of_the_loss_agrees_with_finite_differences() {
         let output = [0.3, -0.8, 0.1, 0.2, 1.4, 0.0, -0.5, 0.9];
         let labels = [[0.5, -0.2], [-1.0, 0.4]];
         let mut got = Vec::new();
@@ -228,12 +230,12 @@ mod tests {
             .take(10)
             .map(ObservationModel::new)
             .collect();
-        let settings = Settings {
+        let settings = BcSettings {
             updates: 60,
             batch: 64,
             width: 16,
             rate: 3e-3,
-            ..Settings::default()
+            ..BcSettings::default()
         };
         let mut whole = Bc::new(settings.clone(), &models, 5);
         let losses: Vec<f32> = std::iter::from_fn(|| whole.update()).collect();

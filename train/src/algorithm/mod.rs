@@ -1,4 +1,4 @@
-//! The algorithms, one file each.
+//! The learning algorithms, one file each; their parts are in the folders of the same names.
 
 pub mod apg;
 pub mod bc;

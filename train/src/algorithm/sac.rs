@@ -1,80 +1,38 @@
-//! Soft actor-critic with the paper's rewards: SACER-SVO, SACER-V, and SAC without replayed reward.
+//! Soft actor-critic with the paper's rewards: SACER-SVO, SACER-V, and SAC without episode replay.
 //!
-//! The paper's Algorithm 1: an episode is driven with the present policy; when
-//! it ends, its rewards are computed again with what its length tells, and only
-//! then do its transitions enter the replay buffer, from which batches are drawn.
-//! Several episodes are under way at a time, so that the policy acts on them together.
+//! The paper's Algorithm 1: the current policy drives an episode. When the episode
+//! ends, its rewards are recomputed with the episode's length, and its transitions
+//! enter the replay buffer, from which the updates draw batches. Several episodes
+//! run in parallel, so that one forward pass of the policy serves all of them.
+//!
+//! One update is [`learner::Learner::update`].
 
 pub mod learner;
+mod losses;
+mod networks;
+mod settings;
 
-use crate::algorithm::sac::learner::{Learner, Losses, Rates};
-use crate::driving::episodes::{Course, Episode, Reward};
+pub use settings::{Rates, SacSettings};
+
+use crate::algorithm::sac::learner::{Learner, Losses};
+use crate::driving::episodes::{Course, Episode};
 use crate::driving::inputs::Inputs;
 use crate::driving::policy_view::PolicyView;
 use crate::driving::replay::{Batch, Replay};
 use crate::nn::network::Network;
-use cede_controller::{FeatureSet, Perspective};
+use cede_controller::Perspective;
 use cede_sim::ObservationModel;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 
-/// How a run goes. Defaults are the paper's Table I where it says something.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Settings {
-    /// What the networks are told; the paper's eight numbers by default.
-    #[serde(with = "crate::driving::inputs::by_name")]
-    pub features: FeatureSet,
-    /// What is rewarded.
-    pub reward: Reward,
-    /// Training episodes.
-    pub episodes: u64,
-    /// Steps of episodes for each update: 1 is the paper's Algorithm 1.
-    pub steps_per_update: u32,
-    /// Episodes under way at a time.
-    pub parallel: usize,
-    /// Width of the three hidden layers of all networks: a multiple of 16 up to 128.
-    pub width: usize,
-    /// Capacity of the replay buffer, in steps.
-    pub buffer: usize,
-    /// Steps in the buffer before learning begins.
-    pub buffer_minimum: usize,
-    /// Steps in a batch.
-    pub batch: usize,
-    /// Whether a step's reward is counted from what its course has usually earned a step. Rewards
-    /// are negative nearly everywhere: counted from 0, an early end would spare costs.
-    pub centred: bool,
-    /// Learning rates and constants of the algorithm.
-    pub rates: Rates,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            features: FeatureSet::Raw,
-            reward: Reward::SacerSvo,
-            episodes: 35_000,
-            steps_per_update: 1,
-            parallel: 16,
-            width: 128,
-            buffer: 100_000,
-            buffer_minimum: 1_000,
-            batch: 512,
-            centred: false,
-            rates: Rates::default(),
-        }
-    }
-}
-
-/// Share by which a course's running mean reward approaches that of an episode that has ended.
+/// Share by which an episode moves the running mean reward of its course.
 const MEAN_RATE: f32 = 0.1;
 
-/// What a run carries from one update to the next: networks, targets, moments, temperature, replay
-/// buffer, episodes under way and the generator.
+/// The state of a run between two updates; a checkpoint stores it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Progress {
-    settings: Settings,
+pub struct SacProgress {
+    settings: SacSettings,
     inputs: Inputs,
     learner: Learner,
     replay: Replay,
@@ -82,36 +40,36 @@ pub struct Progress {
     running: Vec<Episode>,
     episodes: u64,
     updates: u64,
-    /// Steps since the last update that was due.
+    /// Steps since the last update.
     owed: u32,
-    /// Of each course, the running mean of its episodes' mean reward a step, once there was one.
+    /// For each course the running mean of its episodes' mean reward per step; `None` before the first.
     usual: Vec<Option<f32>>,
 }
 
-/// A training run.
+/// A training run of soft actor-critic.
 pub struct Sac<'e> {
-    progress: Progress,
+    progress: SacProgress,
     courses: &'e [Course<'e>],
     batch: Batch,
 }
 
-/// What one round of steps brought.
+/// The result of one round.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Round {
     /// Episodes that ended.
     pub episodes: u64,
-    /// Sum over them of the mean reward per step.
+    /// Sum of the mean reward per step over these episodes.
     pub reward: f32,
-    /// Updates done.
+    /// Number of updates.
     pub updates: u64,
-    /// What the last update saw.
+    /// The losses of the last update.
     pub losses: Option<Losses>,
 }
 
 impl<'e> Sac<'e> {
-    /// A run over `courses` that has not yet begun.
+    /// A new run over `courses`.
     #[must_use]
-    pub fn new(settings: Settings, courses: &'e [Course<'e>], seed: u64) -> Self {
+    pub fn new(settings: SacSettings, courses: &'e [Course<'e>], seed: u64) -> Self {
         let mut random = Pcg64::seed_from_u64(seed);
         let (i, w) = (settings.features.count(), settings.width);
         let actor = Network::new(&[i, w, w, w, 4], &mut random);
@@ -124,10 +82,10 @@ impl<'e> Sac<'e> {
         Self::from_actor(settings, courses, actor, inputs, random)
     }
 
-    /// A run whose policy begins as `actor`, which sees `inputs`.
+    /// A new run whose policy network begins as `actor`, with `inputs` as its inputs.
     #[must_use]
     pub fn from_actor(
-        settings: Settings,
+        settings: SacSettings,
         courses: &'e [Course<'e>],
         actor: Network,
         inputs: Inputs,
@@ -135,7 +93,7 @@ impl<'e> Sac<'e> {
     ) -> Self {
         let learner = Learner::from_actor(actor, settings.width, &settings.rates, &mut random);
         let replay = Replay::new(settings.buffer, settings.features.count(), 2);
-        let progress = Progress {
+        let progress = SacProgress {
             settings,
             inputs,
             learner,
@@ -152,7 +110,7 @@ impl<'e> Sac<'e> {
 
     /// The run that `progress` was taken from, over the same courses.
     #[must_use]
-    pub fn resume(progress: Progress, courses: &'e [Course<'e>]) -> Self {
+    pub fn resume(progress: SacProgress, courses: &'e [Course<'e>]) -> Self {
         Self {
             progress,
             courses,
@@ -160,29 +118,29 @@ impl<'e> Sac<'e> {
         }
     }
 
-    /// All that a resumed run needs to go on bit for bit.
+    /// The state from which [`Sac::resume`] continues with the same bits.
     #[must_use]
-    pub fn progress(&self) -> &Progress {
+    pub fn progress(&self) -> &SacProgress {
         &self.progress
     }
 
-    /// The driver as it is: the averaged policy's mean, without its noise.
+    /// The current policy: the mean action of the averaged policy network.
     #[must_use]
     pub fn view(&self) -> PolicyView<'_> {
         PolicyView {
-            network: self.progress.learner.driver(),
+            network: self.progress.learner.averaged(),
             inputs: &self.progress.inputs,
             perspective: Perspective::Joint,
         }
     }
 
-    /// Episodes that have ended, and all there are to be.
+    /// Episodes that have ended, and their total number.
     #[must_use]
     pub fn episodes(&self) -> (u64, u64) {
         (self.progress.episodes, self.progress.settings.episodes)
     }
 
-    /// One step of all episodes under way and the updates that are due for it, or `None` when all
+    /// Advances all episodes by one step and does the updates that are then due. Returns `None` if all
     /// episodes are done.
     pub fn round(&mut self) -> Option<Round> {
         if self.progress.episodes >= self.progress.settings.episodes || self.courses.is_empty() {
@@ -213,8 +171,9 @@ impl<'e> Sac<'e> {
         Some(round)
     }
 
+    /// Advances all episodes by one step; those that end enter the replay buffer and are replaced.
     fn step_all(&mut self, round: &mut Round) {
-        let Progress {
+        let SacProgress {
             settings,
             inputs,
             learner,
@@ -265,17 +224,17 @@ mod tests {
     use cede_data::Dataset;
 
     #[test]
-    fn a_resumed_run_equals_the_uninterrupted_one_bit_for_bit() {
+    fn a_resumed_run_has_the_bits_of_an_uninterrupted_one() {
         let dataset = Dataset::synthetic(6, 4);
         let courses: Vec<Course<'_>> = dataset.encounters.iter().take(6).map(Course::new).collect();
-        let settings = Settings {
+        let settings = SacSettings {
             parallel: 4,
             width: 16,
             buffer: 500,
             buffer_minimum: 50,
             batch: 32,
             steps_per_update: 8,
-            ..Settings::default()
+            ..SacSettings::default()
         };
         let mut whole = Sac::new(settings.clone(), &courses, 1);
         let rounds =

@@ -1,4 +1,4 @@
-//! A network's inputs: the controller's features, normalised with constants that travel with the weights.
+//! A network's inputs: the controller's features, normalised with constants that the weights file stores.
 
 #[cfg(doc)]
 use cede_controller::policy::features::LIMIT;
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// A feature set with the centre and the scale of each feature.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
-    #[serde(with = "crate::driving::inputs::by_name")]
+    #[serde(with = "FeatureSetName")]
     features: FeatureSet,
     /// Centre of each feature.
     pub centres: Vec<f32>,
@@ -17,7 +17,7 @@ pub struct Inputs {
     pub scales: Vec<f32>,
 }
 
-/// Deviations below this count as constant features: they are left unscaled.
+/// A feature whose standard deviation is below this counts as constant and is not scaled.
 const CONSTANT: f64 = 1e-3;
 
 impl Inputs {
@@ -50,7 +50,7 @@ impl Inputs {
         }
     }
 
-    /// What the network is told.
+    /// The feature set.
     #[must_use]
     pub fn features(&self) -> FeatureSet {
         self.features
@@ -65,19 +65,34 @@ impl Inputs {
     }
 }
 
-/// A feature set is written as its name.
-pub(crate) mod by_name {
-    use cede_controller::FeatureSet;
-    use serde::{Deserialize, Deserializer, Serializer};
+/// Serialises a [`FeatureSet`] as its name, for fields marked `#[serde(with = "FeatureSetName")]`.
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "FeatureSet", rename_all = "kebab-case")]
+pub(crate) enum FeatureSetName {
+    Raw,
+    Route,
+    Traffic,
+    Scene,
+}
 
-    #[allow(clippy::trivially_copy_pass_by_ref)] // serde's signature
-    pub(crate) fn serialize<S: Serializer>(set: &FeatureSet, to: S) -> Result<S::Ok, S::Error> {
-        to.serialize_str(set.name())
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Debug, PartialEq, Serialize, Deserialize)]
+    struct Settings {
+        #[serde(with = "FeatureSetName")]
+        features: FeatureSet,
     }
 
-    pub(crate) fn deserialize<'d, D: Deserializer<'d>>(from: D) -> Result<FeatureSet, D::Error> {
-        let name = String::deserialize(from)?;
-        let known = FeatureSet::ALL.into_iter().find(|set| set.name() == name);
-        known.ok_or_else(|| serde::de::Error::custom(format!("no feature set is called {name}")))
+    #[test]
+    fn a_feature_set_is_serialised_as_its_name() {
+        for features in FeatureSet::ALL {
+            let text = toml::to_string(&Settings { features }).unwrap();
+            assert_eq!(text, format!("features = \"{}\"\n", features.name()));
+            assert_eq!(toml::from_str(&text), Ok(Settings { features }));
+        }
+        let error = toml::from_str::<Settings>("features = \"rwa\"").unwrap_err();
+        assert!(error.to_string().contains("rwa"), "{error}");
     }
 }

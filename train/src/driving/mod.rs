@@ -1,8 +1,8 @@
-//! A network in the driver's seat.
+//! A network as a driver.
 //!
-//! `cede_sim::ObservationModel` says what a vehicle of an encounter observes; [`inputs`] makes it a
-//! network's inputs and [`slopes`] carries derivatives back; [`policy_view`] turns outputs into
-//! accelerations; [`episodes`] and [`judge`] drive whole encounters.
+//! `cede_sim::ObservationModel` computes what a vehicle of an encounter observes. [`inputs`] turns
+//! this into a network's inputs, [`slopes`] differentiates them, [`policy_view`] turns outputs into
+//! accelerations, and [`episodes`] and [`judge`] drive whole encounters.
 
 pub mod dual;
 pub mod episodes;

@@ -1,4 +1,4 @@
-//! A trained network with its inputs and its seat: what drives, and what a weights file is made of.
+//! A network with its inputs and its perspective: it drives encounters and encodes weights files.
 
 use crate::driving::inputs::Inputs;
 use crate::nn::network::{Network, Tape};
@@ -6,19 +6,19 @@ use cede_controller::policy::acceleration;
 use cede_controller::policy::weights::Draft;
 use cede_controller::{Pair, Perspective, WeightsError};
 
-/// A network that drives, borrowed from the run that trains it.
+/// A network that drives, borrowed from the training run.
 #[derive(Clone, Copy, Debug)]
 pub struct PolicyView<'n> {
     /// The network: its first two outputs are the means of the two commands.
     pub network: &'n Network,
     /// Its inputs.
     pub inputs: &'n Inputs,
-    /// Whose commands it gives.
+    /// Whose commands its outputs are.
     pub perspective: Perspective,
 }
 
 impl PolicyView<'_> {
-    /// Accelerations (m/s²) of the left-turner and of the other for what each pair of vehicles sees.
+    /// Accelerations (m/s²) of the left-turner and of the other vehicle, for the observations of both.
     pub fn drive(&self, pairs: &[[Pair; 2]], tape: &mut Tape) -> Vec<[f32; 2]> {
         let alone = self.perspective == Perspective::Ego;
         let mut rows = Vec::new();
@@ -43,7 +43,7 @@ impl PolicyView<'_> {
     /// The words of the weights file (`.cede`) that `cede_controller` runs.
     ///
     /// # Errors
-    /// When the network has another shape than the controller's, or its training has diverged.
+    /// The network does not have the controller's shape, or a parameter is not finite.
     pub fn weights(&self, provenance: [u8; 32]) -> Result<Vec<u32>, WeightsError> {
         let mut parameters = Vec::with_capacity(self.network.parameters().len());
         for layer in self.network.layers() {

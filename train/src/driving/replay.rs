@@ -19,7 +19,7 @@ pub struct Transition {
     pub done: bool,
 }
 
-/// A batch of transitions, one row a sample in each field.
+/// A batch of transitions; each field has one row per sample.
 #[derive(Clone, Debug, Default)]
 pub struct Batch {
     /// Features before the steps.
@@ -34,7 +34,7 @@ pub struct Batch {
     pub continues: Vec<f32>,
 }
 
-/// The last `capacity` transitions, first in first out.
+/// The last `capacity` transitions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Replay {
     observation: usize,
@@ -42,12 +42,12 @@ pub struct Replay {
     capacity: usize,
     /// Transitions pushed so far.
     pushed: usize,
-    /// One row a transition: observation, action, next observation, reward, continues.
+    /// One row per transition: observation, action, next observation, reward, continues.
     rows: Vec<f32>,
 }
 
 impl Replay {
-    /// An empty buffer for `capacity` transitions with so many features and actions.
+    /// An empty buffer for `capacity` transitions of `observation` features and `action` actions.
     #[must_use]
     pub fn new(capacity: usize, observation: usize, action: usize) -> Self {
         Self {
@@ -63,19 +63,19 @@ impl Replay {
         2 * self.observation + self.action + 2
     }
 
-    /// Number of transitions that it holds.
+    /// Number of transitions in the buffer.
     #[must_use]
     pub fn len(&self) -> usize {
         self.pushed.min(self.capacity)
     }
 
-    /// Whether it holds none.
+    /// Whether the buffer is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.pushed == 0
     }
 
-    /// Takes in a transition; the oldest makes room.
+    /// Adds a transition. In a full buffer it replaces the oldest.
     ///
     /// # Panics
     /// If the transition does not have the buffer's shape.
@@ -142,7 +142,7 @@ impl Batch {
         self.rewards.len()
     }
 
-    /// Whether there are none.
+    /// Whether the batch is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.rewards.is_empty()
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn the_oldest_transitions_make_room_and_rows_stay_whole() {
+    fn new_transitions_replace_the_oldest_and_rows_stay_whole() {
         let mut replay = Replay::new(3, 2, 1);
         (0..5).for_each(|i| replay.push(&transition(i)));
         assert_eq!(replay.len(), 3);

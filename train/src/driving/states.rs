@@ -1,4 +1,4 @@
-//! Two vehicles' states as four numbers, for checkpoints.
+//! Serialises the states of two vehicles as four numbers, for checkpoints.
 
 use cede_controller::kinematics::State;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};

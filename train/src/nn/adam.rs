@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Adam with its moments; the defaults are the paper's (PyTorch's) β₁ = 0.9, β₂ = 0.999, ε = 1e-8.
+/// Adam with its moments; β₁ = 0.9, β₂ = 0.999, ε = 1e-8 as in the paper and in PyTorch.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Adam {
     first: Vec<f32>,
@@ -14,7 +14,7 @@ const BETA: (f32, f32) = (0.9, 0.999);
 const EPSILON: f32 = 1e-8;
 
 impl Adam {
-    /// An optimiser for `parameters` parameters that has not yet moved any.
+    /// An optimiser for `parameters` parameters, before its first step.
     #[must_use]
     pub fn new(parameters: usize) -> Self {
         Self {

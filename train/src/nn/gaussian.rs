@@ -7,12 +7,12 @@
 
 use core::f32::consts::LN_2;
 
-/// Range of log σ. Beyond it the distribution is either a point or flat, and gradients die.
+/// Range of log σ. Outside it the distribution is nearly a point or nearly flat, and its gradients vanish.
 pub const LOG_DEVIATION: (f32, f32) = (-5.0, 2.0);
 
 const HALF_LN_2_PI: f32 = 0.918_938_5;
 
-/// One sampled action with what its gradient needs.
+/// One sampled action and the values that its gradient needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// The action, in (−1, 1).
@@ -34,8 +34,8 @@ fn log_deviation(raw: f32) -> (f32, f32) {
 }
 
 impl Sample {
-    /// The action that `noise` (a standard normal deviate) picks from the distribution whose mean
-    /// and raw deviation the network has put out.
+    /// The action for `noise` (a standard normal deviate) under the distribution with the network's
+    /// outputs `mean` and `raw_deviation`.
     #[must_use]
     pub fn new(mean: f32, raw_deviation: f32, noise: f32) -> Self {
         let (log_sigma, slope) = log_deviation(raw_deviation);
@@ -59,8 +59,8 @@ impl Sample {
         }
     }
 
-    /// Derivatives with respect to (mean, raw deviation) of a loss whose derivatives with respect to
-    /// the action and to its log-density are given; `noise` is held (reparameterisation).
+    /// Derivatives of a loss with respect to (mean, raw deviation), from its derivatives with
+    /// respect to the action and to the log-density. The noise is constant (reparameterisation).
     #[must_use]
     pub fn backward(&self, by_action: f32, by_log_density: f32) -> (f32, f32) {
         let by_u =
@@ -73,7 +73,7 @@ impl Sample {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::nn::network::tests::differences;
+    use crate::nn::finite_differences::differences;
 
     /// The definition, in `f64`.
     fn reference(mean: f64, raw: f64, noise: f64) -> (f64, f64) {

@@ -1,7 +1,7 @@
 //! Products of small dense matrices: safe views over the `gemm-f32` kernels.
 //!
-//! The kernels choose AVX-512, AVX2 or scalar code at run time, so two machines
-//! with the same instruction set give the same bits; others differ in the last place.
+//! The kernels choose AVX-512, AVX2 or scalar code at run time. Machines with the
+//! same instruction set give the same bits; others differ in the last place.
 #![allow(unsafe_code)]
 
 use gemm_common::Parallelism;
@@ -31,7 +31,7 @@ impl<'a> Matrix<'a> {
         }
     }
 
-    /// The transpose, without moving a value.
+    /// The transpose, without copying.
     #[must_use]
     pub fn transpose(self) -> Self {
         Self {
@@ -52,7 +52,7 @@ impl<'a> Matrix<'a> {
     }
 }
 
-/// What a product does with the values that are already there.
+/// What a product does with the values in its destination.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Into {
     /// Overwrites them.
@@ -69,9 +69,10 @@ pub fn multiply(destination: &mut [f32], left: Matrix<'_>, right: Matrix<'_>, in
     let (m, n, k) = (left.rows, right.columns, left.columns);
     assert_eq!(k, right.rows, "inner dimensions");
     assert_eq!(destination.len(), m * n, "a product of {m} × {n}");
-    // The kernels write along columns, element by element where these do not lie together. So they are given
-    // the transposed product, rightᵀ · leftᵀ, whose columns are the destination's rows: the same
-    // sums in the same order, at up to fifteen times the speed. Very short rows are no use to them.
+    // The kernels write along columns, and element by element where a column is not contiguous. They
+    // therefore compute the transposed product, rightᵀ · leftᵀ, whose columns are the destination's
+    // rows: the same sums in the same order, up to fifteen times as fast. Rows too short for a vector
+    // do not gain from it.
     if n < SHORT {
         product(destination, (1, n as isize), left, right, into);
     } else {
@@ -80,7 +81,7 @@ pub fn multiply(destination: &mut [f32], left: Matrix<'_>, right: Matrix<'_>, in
     }
 }
 
-/// Rows of the destination shorter than this are not worth a kernel's vectors.
+/// Rows of the destination shorter than this are multiplied without the transposition.
 const SHORT: usize = 8;
 
 /// `left · right`, to a destination with these strides from (column to column, row to row).

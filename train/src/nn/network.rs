@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 /// A dense network: affine layers, ReLU after each but the last.
 ///
 /// All parameters lie in one flat vector, layer by layer: the weights row by
-/// row (`inputs × outputs`: one row an input), then the biases. So optimisers,
-/// target networks and checkpoints see a network as a vector.
+/// row (`inputs × outputs`, one row per input), then the biases. Optimisers,
+/// target networks and checkpoints treat a network as that vector.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Network {
     sizes: Vec<usize>,
@@ -25,11 +25,11 @@ pub struct Layer<'a> {
     pub outputs: usize,
     /// `inputs × outputs`, row by row.
     pub weights: &'a [f32],
-    /// One an output.
+    /// One per output.
     pub biases: &'a [f32],
 }
 
-/// What the forward pass leaves for the backward pass: the values at every layer.
+/// The values at every layer, which the forward pass keeps for the backward pass.
 #[derive(Clone, Debug, Default)]
 pub struct Tape {
     batch: usize,
@@ -38,23 +38,23 @@ pub struct Tape {
 }
 
 impl Tape {
-    /// The network's inputs, one row a sample.
+    /// The network's inputs, one row per sample.
     #[must_use]
     pub fn input(&self) -> &[f32] {
         self.values.first().map_or(&[], Vec::as_slice)
     }
 
-    /// The network's outputs, one row a sample.
+    /// The network's outputs, one row per sample.
     #[must_use]
     pub fn output(&self) -> &[f32] {
         self.values.last().map_or(&[], Vec::as_slice)
     }
 }
 
-/// Derivatives of a loss on their way back through a network.
+/// Derivatives of a loss during backpropagation.
 ///
-/// Before [`Network::backward`]: with respect to the outputs; after it: with
-/// respect to the inputs. One row a sample.
+/// Before [`Network::backward`] they are with respect to the outputs, after it
+/// with respect to the inputs. One row per sample.
 #[derive(Clone, Debug, Default)]
 pub struct Delta {
     /// The derivatives.
@@ -83,7 +83,16 @@ impl Network {
         }
     }
 
-    /// Multiplies the last layer's parameters by `factor`: a small one makes the first outputs small.
+    /// A network of these `sizes` with these `parameters`.
+    pub(super) fn from_parts(sizes: Vec<usize>, parameters: Vec<f32>) -> Self {
+        debug_assert_eq!(
+            pairs(&sizes).map(|(i, o)| (i + 1) * o).sum::<usize>(),
+            parameters.len()
+        );
+        Self { sizes, parameters }
+    }
+
+    /// Multiplies the last layer's parameters by `factor`. A small factor makes the initial outputs small.
     #[must_use]
     pub fn with_last_layer_scaled(mut self, factor: f32) -> Self {
         let n = self.sizes.len();
@@ -93,46 +102,6 @@ impl Network {
             .iter_mut()
             .for_each(|p| *p *= factor);
         self
-    }
-
-    /// One network whose outputs are the means of `members`' outputs: their hidden layers lie side by
-    /// side, without a weight between them.
-    ///
-    /// # Panics
-    /// If there are no members, or they differ in shape.
-    #[must_use]
-    pub fn mean(members: &[Self]) -> Self {
-        let (count, shape) = (members.len(), &members[0].sizes);
-        assert!(members.iter().all(|member| member.sizes == *shape));
-        let last = shape.len() - 1;
-        let wide = |i: usize| shape[i] * if i == 0 || i == last { 1 } else { count };
-        let sizes: Vec<usize> = (0..=last).map(wide).collect();
-        let share = 1.0 / count as f32;
-        let mut parameters = Vec::new();
-        for i in 0..last {
-            let (inputs, outputs) = (sizes[i], sizes[i + 1]);
-            let mut layer = vec![0.0; (inputs + 1) * outputs];
-            for (k, member) in members.iter().enumerate() {
-                let Some(part) = member.layers().nth(i) else {
-                    continue;
-                };
-                // Members have the first layer's rows and the last one's columns in common.
-                let row = if i == 0 { 0 } else { k * part.inputs };
-                let column = if i + 1 == last { 0 } else { k * part.outputs };
-                let weight = if i + 1 == last { share } else { 1.0 };
-                let rows = part.weights.chunks_exact(part.outputs).enumerate();
-                let rows = rows.map(|(r, values)| (row + r, values));
-                for (r, values) in rows.chain([(inputs, part.biases)]) {
-                    let place = &mut layer[r * outputs + column..][..part.outputs];
-                    place
-                        .iter_mut()
-                        .zip(values)
-                        .for_each(|(p, v)| *p += weight * v);
-                }
-            }
-            parameters.extend(layer);
-        }
-        Self { sizes, parameters }
     }
 
     /// Number of values at each layer, inputs first.
@@ -178,7 +147,7 @@ impl Network {
         offsets
     }
 
-    /// Runs the network on `input` (one row a sample) and keeps what [`Network::backward`] needs.
+    /// Runs the network on `input` (one row per sample) and keeps the layers' values in `tape`.
     ///
     /// # Panics
     /// If `input` is not whole rows.
@@ -212,8 +181,8 @@ impl Network {
         tape.output()
     }
 
-    /// Takes `delta` from the outputs back to the inputs, and adds the derivatives with respect to
-    /// the parameters to `gradient` where one is given.
+    /// Backpropagates `delta` from the outputs to the inputs, and adds the derivatives with respect
+    /// to the parameters to `gradient`, if there is one.
     ///
     /// # Panics
     /// If `delta` or `gradient` does not have the shape of the forward pass that filled `tape`.
@@ -249,7 +218,7 @@ impl Network {
         }
     }
 
-    /// Moves every parameter by the share `rate` towards `other`'s: a target network's soft update.
+    /// Moves every parameter towards `other`'s by the share `rate`: the soft update of a target network.
     ///
     /// # Panics
     /// If the two networks differ in shape.
@@ -265,60 +234,10 @@ fn pairs(sizes: &[usize]) -> impl Iterator<Item = (usize, usize)> + '_ {
 }
 
 #[cfg(test)]
-pub(crate) mod tests {
+mod tests {
     use super::*;
+    use crate::nn::finite_differences::{assert_gradient, differences, reference, wide};
     use rand::SeedableRng;
-
-    /// The same network in `f64`, written as its definition: what gradients are checked against.
-    pub(crate) fn reference(network: &Network, parameters: &[f64], input: &[f64]) -> Vec<f64> {
-        let mut values = input.to_vec();
-        let mut start = 0;
-        let last = network.sizes.len() - 2;
-        for (i, (inputs, outputs)) in pairs(&network.sizes).enumerate() {
-            let (weights, biases) = parameters[start..].split_at(inputs * outputs);
-            values = (0..outputs)
-                .map(|o| {
-                    let sum: f64 = (0..inputs)
-                        .map(|j| values[j] * weights[j * outputs + o])
-                        .sum();
-                    let y = sum + biases[o];
-                    if i < last { y.max(0.0) } else { y }
-                })
-                .collect();
-            start += (inputs + 1) * outputs;
-        }
-        values
-    }
-
-    /// Central differences of `f` at `x`.
-    pub(crate) fn differences(x: &[f64], f: impl Fn(&[f64]) -> f64) -> Vec<f64> {
-        let mut x = x.to_vec();
-        (0..x.len())
-            .map(|i| {
-                let (old, h) = (x[i], 1e-5);
-                x[i] = old + h;
-                let up = f(&x);
-                x[i] = old - h;
-                let down = f(&x);
-                x[i] = old;
-                (up - down) / (2.0 * h)
-            })
-            .collect()
-    }
-
-    pub(crate) fn wide(values: &[f32]) -> Vec<f64> {
-        values.iter().map(|&x| f64::from(x)).collect()
-    }
-
-    /// Fails unless the two gradients agree to 1e-4 of the larger one's largest component.
-    pub(crate) fn assert_gradient(got: &[f32], expected: &[f64]) {
-        assert_eq!(got.len(), expected.len());
-        let scale = expected.iter().fold(1e-3, |m: f64, e| m.max(e.abs()));
-        for (i, (g, e)) in got.iter().zip(expected).enumerate() {
-            let error = (f64::from(*g) - e).abs() / scale;
-            assert!(error < 1e-4, "component {i}: {g} against {e}");
-        }
-    }
 
     #[test]
     fn gradients_of_every_layer_agree_with_finite_differences() {
@@ -347,23 +266,6 @@ pub(crate) mod tests {
         let (p, x) = (wide(network.parameters()), wide(&input));
         assert_gradient(&gradient, &differences(&p, |p| loss(p, &x)));
         assert_gradient(&delta.values, &differences(&x, |x| loss(&p, x)));
-    }
-
-    #[test]
-    fn networks_side_by_side_give_the_mean_of_their_outputs() {
-        let mut random = Pcg64::seed_from_u64(5);
-        let members: Vec<Network> = (0..3)
-            .map(|_| Network::new(&[4, 6, 5, 2], &mut random))
-            .collect();
-        let mean = Network::mean(&members);
-        assert_eq!(mean.sizes(), [4, 18, 15, 2]);
-        let input: Vec<f32> = (0..8).map(|_| random.random_range(-2.0..2.0)).collect();
-        let run = |network: &Network| network.forward(&input, &mut Tape::default()).to_vec();
-        let each: Vec<Vec<f32>> = members.iter().map(run).collect();
-        for (i, got) in run(&mean).into_iter().enumerate() {
-            let expected = each.iter().map(|outputs| outputs[i]).sum::<f32>() / 3.0;
-            assert!((got - expected).abs() < 1e-6, "{got} against {expected}");
-        }
     }
 
     #[test]

@@ -1,47 +1,47 @@
-//! A run's learning curve: how its driver scores along the way.
+//! A run's learning curve: scores of its policy during training.
 
 use crate::driving::episodes::Course;
 use crate::driving::judge::{Score, judge};
-use crate::run::{Report, Run};
+use crate::run::runner::{Report, Run};
 use serde::{Deserialize, Serialize};
 
-/// Points of a curve, evenly over the run's work.
+/// Number of points of a curve, evenly spaced over the run's work.
 const POINTS: u64 = 25;
 
-/// What a run's drivers are judged on along the way.
+/// The encounters on which the policy is judged during training.
 #[derive(Clone, Debug)]
 pub struct Panel<'e> {
-    /// What the run learns from.
+    /// Encounters that the run learns from.
     pub train: &'e [Course<'e>],
-    /// What it does not learn from.
+    /// Encounters that it does not learn from.
     pub validation: Vec<Course<'e>>,
 }
 
-/// One judgement of a driver.
+/// One point of the curve.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Point {
     /// Share of the run's work that is done, in (0, 1].
     pub share: f32,
     /// Updates so far.
     pub updates: u64,
-    /// On what the run learns from.
+    /// Score on the encounters that the run learns from.
     pub train: Score,
-    /// On what it does not learn from, if there is any.
+    /// Score on the encounters that it does not learn from, if there are any.
     pub validation: Option<Score>,
 }
 
 /// The curve so far.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Curve {
-    /// Judgements, in their order.
+    /// The points in order.
     pub points: Vec<Point>,
     updates: u64,
 }
 
 impl Curve {
-    /// Takes note of a slice of the run's work; judges the driver where a point of the curve is due.
+    /// Records a slice of the run's work. Judges the policy if a point of the curve is due.
     ///
-    /// Cost of a point: some 0.1 ms an encounter.
+    /// A point takes about 0.1 ms per encounter.
     pub fn follow(&mut self, report: &Report, run: &Run<'_>, panel: &Panel<'_>) -> Option<Point> {
         self.updates += report.updates;
         if report.done * POINTS < report.total * (self.points.len() as u64 + 1) {
@@ -63,11 +63,12 @@ impl Curve {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::{Algorithm, Lessons};
+    use crate::run::algorithm::Algorithm;
+    use crate::run::lessons::Lessons;
     use cede_data::{Dataset, Encounter};
 
     #[test]
-    fn a_curve_has_its_points_evenly_over_the_run_and_ends_with_the_last_driver() {
+    fn a_curve_has_evenly_spaced_points_and_ends_with_the_last_policy() {
         let dataset = Dataset::synthetic(30, 4);
         let all: Vec<&Encounter> = dataset.encounters.iter().take(30).collect();
         let lessons = Lessons::new(&all[..20], &[]);

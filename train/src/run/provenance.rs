@@ -1,11 +1,11 @@
-//! What a policy was made from: a text for people, and its SHA-256 for the weights file.
+//! What a policy was trained from: a text, and its SHA-256 for the weights file.
 
 use cede_data::Encounter;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 
-/// SHA-256 of all that training reads of `encounters`, and of the text of its `claims` (empty where
-/// there are none): the same data, the same hash.
+/// SHA-256 of everything that training reads from `encounters`, and of the text of its `claims`
+/// (empty if there are none).
 #[must_use]
 pub fn data_hash<'e>(
     encounters: impl IntoIterator<Item = &'e Encounter>,
@@ -37,7 +37,7 @@ pub fn data_hash<'e>(
     hash.finalize().into()
 }
 
-/// How a policy came about, in the words that go beside its weights.
+/// How a policy was trained; its text is stored next to the weights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Provenance {
     /// The algorithm's name on the command line.
@@ -46,13 +46,13 @@ pub struct Provenance {
     pub settings: String,
     /// Seed of every random choice.
     pub seed: u64,
-    /// Where the data came from, in a few words.
+    /// Source of the data, in a few words.
     pub data: String,
     /// Number of encounters.
     pub encounters: usize,
     /// See [`data_hash`].
     pub data_hash: [u8; 32],
-    /// The command that makes it again.
+    /// The command that trains it again.
     pub command: String,
 }
 
@@ -62,7 +62,7 @@ impl Provenance {
     pub fn text(&self) -> String {
         let mut hash = String::new();
         for byte in self.data_hash {
-            // Writing to a string does not fail.
+            // Writing to a string cannot fail.
             let _ = write!(hash, "{byte:02x}");
         }
         format!(

@@ -1,20 +1,21 @@
-//! Which settings a training can begin with.
+//! The ranges of the settings.
 
-use crate::algorithm::{apg, bc, sac};
-use crate::run;
+use crate::algorithm::apg::ApgSettings;
+use crate::algorithm::bc::BcSettings;
+use crate::algorithm::sac::SacSettings;
 use cede_controller::policy::mlp::{LANES, MAX_WIDTH};
 
-/// A setting that no training can begin with.
+/// A setting that is out of its range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{name} must be {range}")]
 pub struct OutOfRange {
-    /// The setting.
+    /// Name of the setting.
     pub name: &'static str,
-    /// What it must be.
+    /// Its range in words.
     pub range: &'static str,
 }
 
-/// A setting, whether it is in its range, and the range in words.
+/// The name of a setting, whether it is in its range, and the range in words.
 type Check = (&'static str, bool, &'static str);
 
 const COUNT: &str = "1 to 1,000,000";
@@ -44,17 +45,17 @@ fn width(width: usize) -> Check {
     ("width", fits, "a multiple of 16 up to 128")
 }
 
-fn of_bc(s: &bc::Settings) -> Vec<Check> {
-    vec![
+pub(super) fn check_bc(s: &BcSettings) -> Result<(), OutOfRange> {
+    first_violation(vec![
         width(s.width),
         count("batch", s.batch),
         positive("rate", s.rate),
-    ]
+    ])
 }
 
-fn of_sac(s: &sac::Settings) -> Vec<Check> {
+pub(super) fn check_sac(s: &SacSettings) -> Result<(), OutOfRange> {
     let rates = &s.rates;
-    vec![
+    first_violation(vec![
         width(s.width),
         count("batch", s.batch),
         count("parallel", s.parallel),
@@ -81,15 +82,15 @@ fn of_sac(s: &sac::Settings) -> Vec<Check> {
             "a number",
         ),
         positive("rates.initial_temperature", rates.initial_temperature),
-    ]
+    ])
 }
 
-fn of_apg(s: &apg::Settings) -> Vec<Check> {
+pub(super) fn check_apg(s: &ApgSettings) -> Result<(), OutOfRange> {
     let (cost, refinement, claims) = (&s.cost, &s.refinement, &s.claims);
     let joint = s.width.saturating_mul(s.members as usize);
     let updates = |name, n| (name, n <= 10_000_000, "0 to 10,000,000");
     let horizon = |name, n| (name, (1..=1_000).contains(&n), HORIZON);
-    vec![
+    first_violation(vec![
         width(s.width),
         (
             "members",
@@ -125,54 +126,58 @@ fn of_apg(s: &apg::Settings) -> Vec<Check> {
         not_negative("claims.slope_margin", claims.slope_margin),
         ("claims.fresh", claims.fresh <= 10_000, "0 to 10,000"),
         ("claims.hard", claims.hard <= 10_000, "0 to 10,000"),
-    ]
+    ])
 }
 
-impl run::Settings {
-    /// Whether a training can begin with them.
-    ///
-    /// # Errors
-    /// The first that is out of its range.
-    pub fn check(&self) -> Result<(), OutOfRange> {
-        let checks = match self {
-            Self::Bc(settings) => of_bc(settings),
-            Self::Sac(settings) => of_sac(settings),
-            Self::Apg(settings) => of_apg(settings),
-        };
-        match checks.into_iter().find(|(_, holds, _)| !holds) {
-            Some((name, _, range)) => Err(OutOfRange { name, range }),
-            None => Ok(()),
-        }
+fn first_violation(checks: Vec<Check>) -> Result<(), OutOfRange> {
+    match checks.into_iter().find(|(_, holds, _)| !holds) {
+        Some((name, _, range)) => Err(OutOfRange { name, range }),
+        None => Ok(()),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::run::Algorithm;
+    use super::*;
+    use crate::algorithm::apg::cost::Cost;
 
     #[test]
-    fn what_trainings_begin_with_is_in_range() {
-        for algorithm in Algorithm::ALL {
-            assert_eq!(algorithm.settings().check(), Ok(()));
-            assert_eq!(algorithm.reproduction().check(), Ok(()));
-        }
-    }
-
-    #[test]
-    fn what_no_training_can_begin_with_is_named() {
-        for (algorithm, set, name) in [
-            (Algorithm::Bc, "batch = 0", "batch"),
-            (Algorithm::Bc, "rate = nan", "rate"),
-            (Algorithm::Sac, "width = 100", "width"),
-            (Algorithm::Sac, "buffer = 10", "buffer_minimum"),
-            (Algorithm::Apg, "width = 100000000000", "width"),
-            (Algorithm::Apg, "members = 0", "members"),
-            (Algorithm::Apg, "members = 3", "members"),
-            (Algorithm::Apg, "horizon = 0", "horizon"),
-            (Algorithm::Apg, "cost.gap = -1", "cost.gap"),
+    fn a_setting_out_of_range_is_named() {
+        let bc = |change: fn(&mut BcSettings)| {
+            let mut settings = BcSettings::default();
+            change(&mut settings);
+            check_bc(&settings).unwrap_err().name
+        };
+        let sac = |change: fn(&mut SacSettings)| {
+            let mut settings = SacSettings::default();
+            change(&mut settings);
+            check_sac(&settings).unwrap_err().name
+        };
+        let apg = |change: fn(&mut ApgSettings)| {
+            let mut settings = ApgSettings::default();
+            change(&mut settings);
+            check_apg(&settings).unwrap_err().name
+        };
+        for (named, name) in [
+            (bc(|s| s.batch = 0), "batch"),
+            (bc(|s| s.rate = f32::NAN), "rate"),
+            (sac(|s| s.width = 100), "width"),
+            (sac(|s| s.buffer = 10), "buffer_minimum"),
+            (apg(|s| s.width = 100_000_000_000), "width"),
+            (apg(|s| s.members = 0), "members"),
+            (apg(|s| s.members = 3), "members"),
+            (apg(|s| s.horizon = 0), "horizon"),
+            (
+                apg(|s| {
+                    s.cost = Cost {
+                        gap: -1.0,
+                        ..s.cost
+                    }
+                }),
+                "cost.gap",
+            ),
         ] {
-            let settings = algorithm.settings().with(&set.parse().unwrap()).unwrap();
-            assert_eq!(settings.check().unwrap_err().name, name);
+            assert_eq!(named, name);
         }
     }
 }

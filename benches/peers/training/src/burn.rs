@@ -5,7 +5,7 @@ use burn::optim::{Adam, AdamConfig, AdamState, Optimizer};
 use burn::tensor::activation::{relu, softplus};
 use burn::tensor::module::linear;
 use burn::tensor::{Device, Distribution, Gradients, Tensor, TensorData};
-use cede_train::algorithm::sac::learner::Rates;
+use cede_train::algorithm::sac::Rates;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use std::mem::take;

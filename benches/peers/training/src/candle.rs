@@ -3,7 +3,7 @@
 use crate::{ACTIONS, BATCH, DENSITY, FEATURES, Failure, LOG_SIGMA, Update, batch, layers};
 use candle_core::{Device, Result, Tensor, Var};
 use candle_nn::{AdamW, Linear, Module, Optimizer, ParamsAdamW};
-use cede_train::algorithm::sac::learner::Rates;
+use cede_train::algorithm::sac::Rates;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 

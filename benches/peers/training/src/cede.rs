@@ -1,7 +1,8 @@
 //! Cede's learner.
 
 use crate::{ACTIONS, FEATURES, Update, batch};
-use cede_train::algorithm::sac::learner::{Learner, Rates};
+use cede_train::algorithm::sac::Rates;
+use cede_train::algorithm::sac::learner::Learner;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 

@@ -23,9 +23,9 @@ pub(crate) struct Args {
     json: bool,
 }
 
-/// A row of the file: first the columns of INTERACTION's list of selected scenarios, then ours.
+/// A row of the file: the columns of INTERACTION's list of selected scenarios, then further columns.
 #[derive(Serialize)]
-struct Row<'d> {
+struct EncounterRow<'d> {
     #[serde(rename = "Scenario")]
     scenario: &'d str,
     #[serde(rename = "File_id")]
@@ -38,8 +38,8 @@ struct Row<'d> {
     left: u32,
     #[serde(rename = "Reactive_agent_id")]
     other: u32,
-    /// The other: who turns left gives way to oncoming traffic, and at an
-    /// all-way stop to whoever arrives at the same time.
+    /// The other vehicle: a left-turner yields to oncoming traffic, and at an all-way
+    /// stop to a vehicle that arrives at the same time.
     #[serde(rename = "Agent_with_right_of_way")]
     right_of_way: u32,
     #[serde(rename = "First_agent_id")]
@@ -60,7 +60,7 @@ struct Row<'d> {
     y: String,
 }
 
-impl<'d> Row<'d> {
+impl<'d> EncounterRow<'d> {
     fn of(scenario: &'d str, encounter: &Encounter) -> Self {
         let vehicle = |role| encounter.judged(role);
         Self {
@@ -73,7 +73,7 @@ impl<'d> Row<'d> {
             right_of_way: encounter.id.other,
             first: vehicle(encounter.first).track,
             steps: encounter.steps,
-            // Recorded in steps of 0.1 s.
+            // The record has steps of 0.1 s.
             pet: format!("{:.1}", encounter.pet),
             kind: match encounter.kind {
                 ConflictKind::Crossing => "crossing",
@@ -98,7 +98,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         output::write(path, |out| {
             let mut csv = csv::Writer::from_writer(out);
             for encounter in &dataset.encounters {
-                csv.serialize(Row::of(&dataset.site.folder, encounter))?;
+                csv.serialize(EncounterRow::of(&dataset.site.folder, encounter))?;
             }
             csv.flush()
         })?;

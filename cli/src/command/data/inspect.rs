@@ -12,7 +12,7 @@ use std::path::PathBuf;
 pub(crate) struct Args {
     #[command(flatten)]
     source: Source,
-    /// Where the drawing goes
+    /// Path of the drawing (SVG)
     #[arg(long, default_value = "out/scene.svg", value_name = "FILE.svg", value_parser = svg)]
     draw: PathBuf,
     /// Seed of synthetic encounters [default: 0]

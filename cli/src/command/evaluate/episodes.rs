@@ -1,9 +1,9 @@
-//! One line an episode: CSV for people and spreadsheets, Parquet for data frames.
+//! One line per episode: CSV for spreadsheets, Parquet for data frames.
 
 use crate::failure::Failure;
 use cede_data::{Role, output};
 use cede_sim::episode::End;
-use cede_sim::evaluate::{Drive, Row};
+use cede_sim::evaluate::{Drive, TableRow};
 use parquet::errors::ParquetError;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::record::RecordWriter;
@@ -14,7 +14,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::sync::Arc;
 
-/// A file for the episodes; its ending says in which format.
+/// A file for the episodes; its extension gives the format.
 #[derive(Clone, Debug)]
 pub(crate) struct EpisodeFile {
     path: PathBuf,
@@ -42,7 +42,7 @@ impl FromStr for EpisodeFile {
 }
 
 impl EpisodeFile {
-    /// Writes `records`, all or nothing.
+    /// Writes `records`. An earlier file stays unless all of them are written.
     pub(crate) fn write(&self, records: &[Record]) -> Result<(), Failure> {
         output::write(&self.path, |file| match self.format {
             Format::Csv => write_csv(file, records),
@@ -52,7 +52,8 @@ impl EpisodeFile {
     }
 }
 
-/// One episode. Empty fields could not be told from it; units as in the names, positions in m, angles in rad.
+/// One episode. Fields are empty where the episode does not define them. Units are those in the names;
+/// positions are in m, angles in rad.
 #[derive(Serialize, ParquetRecordWriter)]
 pub(crate) struct Record {
     driver: String,
@@ -85,12 +86,12 @@ pub(crate) struct Record {
     shielded_steps: f64,
 }
 
-/// The episodes behind `row`.
-pub(crate) fn records(row: &Row, drives: &[Drive<'_>]) -> impl Iterator<Item = Record> {
+/// The episodes of `row`.
+pub(crate) fn records(row: &TableRow, drives: &[Drive<'_>]) -> impl Iterator<Item = Record> {
     drives.iter().map(|drive| record(row, drive))
 }
 
-fn record(row: &Row, drive: &Drive<'_>) -> Record {
+fn record(row: &TableRow, drive: &Drive<'_>) -> Record {
     let Drive {
         encounter,
         ego,
@@ -154,7 +155,7 @@ fn write_csv(file: &mut dyn Write, records: &[Record]) -> io::Result<()> {
 }
 
 fn write_parquet(file: &mut dyn Write, records: &[Record]) -> Result<(), ParquetError> {
-    // The Parquet writer wants to own a `Send` sink; the file is small, so it is put together in memory.
+    // The Parquet writer needs an owned `Send` sink. The file is small enough to be built in memory.
     let schema = records.schema()?;
     let mut writer = SerializedFileWriter::new(Vec::new(), schema, Arc::default())?;
     let mut group = writer.next_row_group()?;

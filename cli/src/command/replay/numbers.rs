@@ -1,15 +1,15 @@
-//! An encounter as numbers: where both vehicles were, and what the shield did.
+//! An encounter as numbers: the states of both vehicles, and the shield's interventions.
 
 use crate::report::{Class, words};
 use cede_controller::kinematics::State;
 use cede_data::{Encounter, Role};
-use cede_sim::evaluate::{Drive, Row};
+use cede_sim::evaluate::{Drive, TableRow};
 use cede_sim::metrics::{recorded_states, svo_series};
 
-/// Rows of the table are so many steps (0.5 s) apart.
+/// Steps between two rows of the table (0.5 s).
 const EVERY: usize = 5;
 
-/// The encounter as it was recorded.
+/// Prints the encounter as it was recorded.
 pub(super) fn record(encounter: &Encounter) {
     println!(
         "Left-turner {}, other {}: {} first after {:.1} s, the next {:.1} s later.\n",
@@ -23,8 +23,9 @@ pub(super) fn record(encounter: &Encounter) {
     table(encounter, &states);
 }
 
-/// The encounter as it was driven; of a driver that replays the record only what the shield did to it.
-pub(super) fn drive(row: &Row, drive: &Drive<'_>) {
+/// Prints the encounter as it was driven. Of a driver that replays the record it prints only the
+/// shield's interventions.
+pub(super) fn drive(row: &TableRow, drive: &Drive<'_>) {
     let episode = &drive.episode;
     let first = episode.first().map_or("nobody", name);
     let overruled = overruled(drive);
@@ -57,13 +58,13 @@ pub(super) fn drive(row: &Row, drive: &Drive<'_>) {
     }
 }
 
-/// Steps on end in which one vehicle's shield acts for reasons of one class.
+/// Consecutive steps in which one vehicle's shield intervenes for reasons of one class.
 struct Stretch {
     role: Role,
     class: Class,
     from: usize,
     to: usize,
-    /// What it said first.
+    /// The reason at its first step.
     why: String,
 }
 

@@ -1,59 +1,101 @@
-//! One training of a row, and what it left: weights and a learning curve.
+//! One training of a row, with its files: weights, learning curve and checkpoint.
 
-use super::Trained;
 use crate::failure::Failure;
 use crate::interrupt;
+use crate::settings::RowSettings;
 use crate::training::{Identity, Training};
+use cede_controller::Policy;
 use cede_data::{Encounter, output};
 use cede_formats::cede;
 use cede_train::driving::episodes::Course;
+use cede_train::run::Lessons;
 use cede_train::run::curve::{Curve, Panel};
 use cede_train::run::provenance::{Provenance, data_hash};
-use cede_train::run::{Algorithm, Lessons, Settings};
+use indicatif::{ProgressBar, ProgressStyle};
+use rayon::prelude::*;
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 
-/// One training and what it is judged on.
+/// One training, and what its policy is judged on.
 pub(super) struct Job<'d> {
-    pub(super) algorithm: Algorithm,
-    pub(super) settings: Settings,
+    pub(super) row: RowSettings,
     pub(super) seed: u64,
-    /// The file that it does not learn from, in leave-one-file-out.
+    /// In leave-one-file-out, the file that is left out.
     pub(super) without: Option<u16>,
     pub(super) training: Vec<&'d Encounter>,
-    /// What it may look at beside them: none of them is judged.
-    pub(super) beside: Vec<&'d Encounter>,
-    /// What the learning curve is drawn of, beside what it learns from.
+    /// Auxiliary encounters; the policy is not judged on them.
+    pub(super) auxiliary: Vec<&'d Encounter>,
+    /// Encounters for the learning curve, in addition to those of the training.
     pub(super) validation: Vec<&'d Encounter>,
-    /// Encounters by the name of what they are a selection of.
+    /// The encounters to judge on, by the name of their selection.
     pub(super) judged: Vec<(String, Vec<&'d Encounter>)>,
 }
 
+/// The result of a training.
+pub(super) struct Trained {
+    pub(super) policy: Policy<'static>,
+    pub(super) curve: Curve,
+}
+
+/// Trains all `jobs`, as many at a time as there are threads.
+///
+/// # Errors
+/// A training fails, or the user has interrupted the command.
+pub(super) fn train_all(
+    jobs: &[Job<'_>],
+    site: &str,
+    folder: &Path,
+    resume: bool,
+) -> Result<Vec<Trained>, Failure> {
+    /// Positions of the bar per training.
+    const FINE: f64 = 1e4;
+    let bar = ProgressBar::new(jobs.len() as u64 * FINE as u64);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent} % of {msg}, {eta} left") {
+        bar.set_style(style);
+    }
+    bar.set_message(format!("{} trainings", jobs.len()));
+    let done = Mutex::new(0.0);
+    let progress = |share: f64| {
+        if let Ok(mut done) = done.lock() {
+            *done += share;
+            bar.set_position((*done * FINE) as u64);
+        }
+    };
+    let trained = jobs
+        .par_iter()
+        .with_max_len(1)
+        .map(|job| job.train(site, folder, resume, &progress))
+        .collect();
+    bar.finish_and_clear();
+    trained
+}
+
 impl Job<'_> {
-    /// Name of its files.
+    /// Name of its files, without extension.
     fn name(&self) -> String {
         let without = self.without.map(|file| format!("-without-{file}"));
-        let (row, seed) = (self.algorithm.name(), self.seed);
+        let (row, seed) = (self.row.algorithm.name(), self.seed);
         format!("{row}-{seed}{}", without.unwrap_or_default())
     }
 
     fn provenance(&self, identity: &Identity, site: &str) -> Provenance {
         Provenance {
-            algorithm: self.algorithm.name().to_owned(),
+            algorithm: self.row.algorithm.name().to_owned(),
             settings: identity.settings.text(),
             seed: self.seed,
             data: format!("recordings of {site}"),
-            encounters: self.training.len() + self.beside.len(),
+            encounters: self.training.len() + self.auxiliary.len(),
             data_hash: identity.data,
             command: "cede reproduce".to_owned(),
         }
     }
 
-    /// Trains, or with `resume` takes up what is in `folder` from an earlier time. `progress` is
-    /// told, now and then, which share of the work has been done since it was last told.
+    /// Trains, or with `resume` continues from the files in `folder`. Calls `progress` with the share
+    /// of the work that has been done since the last call.
     ///
     /// # Errors
-    /// A file cannot be used or written, training diverges, or the user has asked to stop.
-    pub(super) fn train(
+    /// A file cannot be used or written, training diverges, or the user has interrupted the command.
+    fn train(
         &self,
         site: &str,
         folder: &Path,
@@ -62,10 +104,10 @@ impl Job<'_> {
     ) -> Result<Trained, Failure> {
         interrupt::check()?;
         let identity = Identity {
-            data: data_hash(self.training.iter().chain(&self.beside).copied(), ""),
-            algorithm: self.algorithm,
+            data: data_hash(self.training.iter().chain(&self.auxiliary).copied(), ""),
+            algorithm: self.row.algorithm,
             seed: self.seed,
-            settings: self.settings.clone(),
+            settings: self.row.settings.clone(),
         };
         let provenance = self.provenance(&identity, site);
         let file = folder.join(self.name() + ".cede");
@@ -73,7 +115,7 @@ impl Job<'_> {
             progress(1.0);
             return Ok(trained);
         }
-        let lessons = Lessons::new(&self.training, &self.beside);
+        let lessons = Lessons::new(&self.training, &self.auxiliary);
         let panel = self.without.is_none().then(|| Panel {
             train: &lessons.courses,
             validation: self.validation.iter().map(|e| Course::new(e)).collect(),
@@ -84,11 +126,11 @@ impl Job<'_> {
         } else {
             Training::new(identity, &lessons, panel, checkpoint)
         };
-        let mut told = 0.0;
+        let mut reported = 0.0;
         training.finish(|report, _, _| {
             let share = report.done as f64 / report.total.max(1) as f64;
-            progress(share - told);
-            told = share;
+            progress(share - reported);
+            reported = share;
             Ok(())
         })?;
         let words = training.run.view().weights(provenance.hash());
@@ -105,7 +147,7 @@ impl Job<'_> {
     }
 }
 
-/// What an earlier time left, if it is the same training.
+/// The result of an earlier run, if it is of the same training.
 fn finished(file: &Path, provenance: &Provenance) -> Option<Trained> {
     let policy = cede::load(file).ok()?;
     let curve = serde_json::from_slice(&std::fs::read(curve_file(file)).ok()?).ok()?;
@@ -113,7 +155,7 @@ fn finished(file: &Path, provenance: &Provenance) -> Option<Trained> {
     same.then_some(Trained { policy, curve })
 }
 
-/// The curve goes first: where the weights are, it is there.
+/// Writes the curve before the weights, so that weights never lack their curve.
 fn write(file: &Path, words: &[u32], curve: &Curve) -> Result<(), Failure> {
     output::write(&curve_file(file), |out| {
         serde_json::to_writer(out, curve).map_err(Into::into)

@@ -1,12 +1,21 @@
-//! The table of `cede reproduce`: mean ± spread over seeds, intervals, baselines, and the paper's rows.
+//! The tables of `cede reproduce`: mean ± standard deviation over seeds, confidence intervals, baselines,
+//! and the paper's rows.
 
-use super::Seeded;
 use crate::table::PAPER;
-use cede_sim::evaluate::Row;
+use cede_sim::evaluate::TableRow;
 use cede_sim::statistics::Share;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
+use serde::Serialize;
 
-/// One table a split and shield, in the order of their first rows; `paper` adds the paper's rows.
+/// A row, and the seed that it was trained from; baselines have none.
+#[derive(Serialize)]
+pub(super) struct Seeded {
+    pub(super) seed: Option<u64>,
+    #[serde(flatten)]
+    pub(super) row: TableRow,
+}
+
+/// One table per split and shield, in the order of their first rows; `paper` adds the paper's rows.
 pub(super) fn render(rows: &[Seeded], paper: bool) -> String {
     let mut blocks: Vec<(&str, &str)> = Vec::new();
     for Seeded { row, .. } in rows {
@@ -14,7 +23,7 @@ pub(super) fn render(rows: &[Seeded], paper: bool) -> String {
             blocks.push((&row.split, &row.shield));
         }
     }
-    // Without the shield first: the paper's protocol.
+    // The tables without the shield come first: the paper's protocol.
     blocks.sort_by_key(|(_, shield)| *shield != "off");
     let tables = blocks.into_iter().map(|(split, shield)| {
         let own: Vec<&Seeded> = rows
@@ -22,15 +31,16 @@ pub(super) fn render(rows: &[Seeded], paper: bool) -> String {
             .filter(|s| (s.row.split.as_str(), s.row.shield.as_str()) == (split, shield))
             .collect();
         let n = own.first().map_or(0, |s| s.row.n);
-        let beside = paper && shield == "off";
-        let table = table(&own, if beside { split } else { "" });
+        let with_paper = paper && shield == "off";
+        let table = table(&own, if with_paper { split } else { "" });
         format!("{split}: n = {n}, joint mode, until conflict, shield {shield}\n{table}\n\n")
     });
     let legend = "mean ± standard deviation over seeds [Wilson 95 % interval of one seed's n]; \
-                  collisions and time-outs a seed\n\n";
+                  collisions and time-outs per seed\n\n";
     tables.collect::<String>() + legend
 }
 
+/// The table of `rows`, with the paper's rows for the split `paper`.
 fn table(rows: &[&Seeded], paper: &str) -> Table {
     let mut table = Table::new();
     table
@@ -78,7 +88,7 @@ fn table(rows: &[&Seeded], paper: &str) -> Table {
 }
 
 fn cells(driver: &str, seeds: &[&Seeded]) -> [String; 8] {
-    let over = |f: fn(&Row) -> Option<f64>| -> Vec<f64> {
+    let over = |f: fn(&TableRow) -> Option<f64>| -> Vec<f64> {
         seeds.iter().filter_map(|s| f(&s.row)).collect()
     };
     let accuracy = over(|row| row.priority_accuracy);
@@ -120,7 +130,7 @@ fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
-/// Mean ± sample standard deviation; the mean alone if there is one value, a dash if there is none.
+/// Mean ± sample standard deviation. A single value is printed alone, no value as a dash.
 fn spread(values: &[f64], digits: usize, unit: &str) -> String {
     let Some(mean) = mean(values) else {
         return "–".to_owned();

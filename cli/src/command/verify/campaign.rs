@@ -1,22 +1,22 @@
-//! `cede verify campaign`: others that do their worst within the contract.
+//! `cede verify campaign`: shielded vehicles among adversaries that keep the contract.
 
 use crate::failure::Failure;
 use cede_controller::shield::Sound;
 use cede_sim::campaign::{Setup, Tally, campaign};
 use clap::Args;
 
-/// What `cede help verify campaign` says beside the options.
+/// The text below the options in `cede help verify campaign`.
 const HELP: &str = "\
-Drives shielded vehicles among adversaries, judged by rapier2d. Exit code 1 if one of them touches anybody.";
+Drives shielded vehicles among adversaries, judged by rapier2d. Exit code 1 if one of them collides.";
 
-/// Scenarios of one set-up that are run before the next.
+/// Scenarios of one set-up before the next set-up.
 const BATCH: u64 = 500;
 
 /// Options of `cede verify campaign`.
 #[derive(Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Campaign {
-    /// Steps of shielded vehicles to run, at least.
+    /// Minimum number of steps of shielded vehicles.
     #[arg(long, default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..))]
     steps: u64,
     /// Seed of the first scenario.
@@ -48,7 +48,7 @@ impl Campaign {
         match all.overlaps + all.unverified + all.false_breaches {
             0 => Ok(()),
             _ => Err(Failure::Check(format!(
-                "{} overlaps, {} steps without a plan, {} breaches that were none",
+                "{} overlaps, {} steps without a plan, {} false breaches",
                 all.overlaps, all.unverified, all.false_breaches
             ))),
         }

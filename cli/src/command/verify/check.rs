@@ -8,10 +8,10 @@ use miette::{IntoDiagnostic, WrapErr};
 use std::io::Write as _;
 use std::path::PathBuf;
 
-/// What `cede help verify check` says beside the options.
+/// The text below the options in `cede help verify check`.
 const HELP: &str = "\
-Exit code 0 if the certificate proves what it says, 1 if it does not. Network and property are found as the
-certificate names them, from the present folder, unless they are given here.";
+Exit code 0 if the certificate is a proof, 1 if it is not. The certificate names the network and the property
+relative to the current folder; --onnx and --vnnlib replace these paths.";
 
 /// Options of `cede verify check`.
 #[derive(Args)]
@@ -20,10 +20,10 @@ pub(crate) struct Check {
     /// The certificate.
     #[arg(value_name = "CERT")]
     certificate: PathBuf,
-    /// The network, if it lies elsewhere now.
+    /// The network, if its path has changed.
     #[arg(long, value_name = "FILE")]
     onnx: Option<PathBuf>,
-    /// The property, if it lies elsewhere now.
+    /// The property, if its path has changed.
     #[arg(long, value_name = "FILE")]
     vnnlib: Option<PathBuf>,
 }
@@ -42,7 +42,7 @@ impl Check {
         let regions = certificate.check(&network, &property);
         let regions =
             regions.map_err(|e| Failure::Check(format!("{}: {e}", self.certificate.display())))?;
-        // A reader that has seen enough may close the pipe.
+        // A closed pipe (`| head`) is not an error.
         let _ = writeln!(std::io::stdout(), "proved: {regions} regions checked");
         Ok(())
     }

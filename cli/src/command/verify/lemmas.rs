@@ -10,26 +10,26 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// What `cede help verify lemmas` says beside the options.
+/// The text below the options in `cede help verify lemmas`.
 const HELP: &str = "\
-Z3 proves the steps of the shield's theorem (docs/theorem.md), over the reals, from the margins that the vehicle
-executes, and refutes each of them with a rule broken. Exit code 1 if a lemma is refuted or left open, or holds in
-spite of a broken rule.";
+Z3 proves the lemmas of the shield's theorem (docs/theorem.md) over the reals, from the margins that the vehicle
+computes, and refutes each lemma without one of its premises. Exit code 1 if a lemma is refuted or undecided, or
+holds without that premise.";
 
 /// Options of `cede verify lemmas`.
 #[derive(Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Lemmas {
-    /// Only this one.
+    /// Prove only this lemma.
     #[arg(long, value_name = "LEMMA", value_parser = known)]
     only: Option<String>,
-    /// The solver: a Z3; the one on the search path if none is given.
+    /// Path of Z3; by default the one on the search path.
     #[arg(long, value_name = "PATH")]
     solver: Option<PathBuf>,
-    /// Give up on a question after so many seconds.
+    /// Time limit per query in seconds.
     #[arg(long, value_name = "SECONDS", default_value_t = 60)]
     timeout: u64,
-    /// Also leave the questions here, as SMT-LIB files, for other solvers.
+    /// Also write the queries to this folder as SMT-LIB files.
     #[arg(long, value_name = "DIR")]
     write: Option<PathBuf>,
     #[command(flatten)]
@@ -39,8 +39,8 @@ pub(crate) struct Lemmas {
     json: bool,
 }
 
-/// A lemma and what came of it.
-type Row = (Lemma, Settled);
+/// A lemma and the solver's answers.
+type SettledLemma = (Lemma, Settled);
 
 impl Lemmas {
     /// Runs the command.
@@ -54,7 +54,7 @@ impl Lemmas {
         }
         let solver = Solver::find(self.solver.as_deref()).map_err(unusable)?;
         let rows = self.settle(&solver, chosen)?;
-        // A reader that has seen enough may close the pipe.
+        // A closed pipe (`| head`) is not an error.
         let _ = writeln!(std::io::stdout(), "{}", self.told(&solver, &rows));
         let open: Vec<&str> = rows
             .iter()
@@ -68,7 +68,7 @@ impl Lemmas {
         }
     }
 
-    fn settle(&self, solver: &Solver, lemmas: Vec<Lemma>) -> Result<Vec<Row>, Failure> {
+    fn settle(&self, solver: &Solver, lemmas: Vec<Lemma>) -> Result<Vec<SettledLemma>, Failure> {
         let limit = Duration::from_secs(self.timeout);
         let settle = |lemma: Lemma| {
             let settled = lemma.settle(solver, limit).map_err(unusable)?;
@@ -78,7 +78,7 @@ impl Lemmas {
         lemmas.into_par_iter().map(settle).collect()
     }
 
-    fn told(&self, solver: &Solver, rows: &[Row]) -> String {
+    fn told(&self, solver: &Solver, rows: &[SettledLemma]) -> String {
         if self.json {
             let rows: Vec<_> = rows.iter().map(json).collect();
             return serde_json::json!({ "solver": solver.version(), "lemmas": rows }).to_string();
@@ -88,14 +88,14 @@ impl Lemmas {
     }
 }
 
-/// The name of a lemma.
+/// Checks that `name` is the name of a lemma.
 fn known(name: &str) -> Result<String, String> {
     let names: Vec<&str> = lemmas().iter().map(|lemma| lemma.id).collect();
     if names.contains(&name) {
         Ok(name.to_owned())
     } else {
         Err(format!(
-            "there is no such lemma; there are: {}",
+            "no such lemma; the lemmas are: {}",
             names.join(", ")
         ))
     }
@@ -106,7 +106,7 @@ fn unusable(error: SolverError) -> Failure {
     Failure::input(error, mend)
 }
 
-/// `LEMMA.smt2`, which should be `unsat`, and `LEMMA-broken.smt2`, which should be `sat`.
+/// Writes `LEMMA.smt2`, which should be `unsat`, and `LEMMA-broken.smt2`, which should be `sat`.
 fn write(folder: &Path, lemmas: &[Lemma]) -> Result<(), Failure> {
     for lemma in lemmas {
         for (kind, script) in [("", &lemma.claim), ("-broken", &lemma.broken.claim)] {
@@ -120,13 +120,13 @@ fn write(folder: &Path, lemmas: &[Lemma]) -> Result<(), Failure> {
 fn word(settled: &Settled) -> &'static str {
     match (&settled.answer, &settled.broken) {
         (Answer::Unsat, Answer::Sat(_)) => "proved",
-        (Answer::Unsat, _) => "toothless",
+        (Answer::Unsat, _) => "vacuous",
         (Answer::Sat(_), _) => "refuted",
         (Answer::Unknown(_), _) => "open",
     }
 }
 
-fn text((lemma, settled): &Row) -> String {
+fn text((lemma, settled): &SettledLemma) -> String {
     let mut text = format!(
         "{:<12} {:<9} {:>5.1} s  {}\n{:30}given: {}",
         lemma.id,
@@ -157,7 +157,7 @@ fn said(answer: &Answer) -> String {
     }
 }
 
-fn json((lemma, settled): &Row) -> serde_json::Value {
+fn json((lemma, settled): &SettledLemma) -> serde_json::Value {
     let witness = |answer: &Answer| match answer {
         Answer::Sat(witness) => witness.iter().map(value).collect::<Vec<_>>().into(),
         Answer::Unsat | Answer::Unknown(_) => serde_json::Value::Null,

@@ -8,12 +8,12 @@ use cede_verify::margin::{Bound, Predicate, bound, shortfall};
 use clap::Args;
 use std::io::Write as _;
 
-/// What `cede help verify margins` says beside the options.
+/// The text below the options in `cede help verify margins`.
 const HELP: &str = "\
-How far f32 can be from the reals where the shield decides. Exit code 1 if it is not shown that its slack covers
-the difference.";
+Bounds the difference between f32 and real arithmetic in the shield's predicates. Exit code 1 if the slack is not
+shown to cover the difference.";
 
-/// The contracts whose margins are bounded: what the rule of precedence adds has none.
+/// The contracts whose margins are bounded. The rule of precedence has no margins.
 const CONTRACTS: [(&str, Contract); 2] = [
     ("worst case", Contract::WORST_CASE),
     (
@@ -26,14 +26,14 @@ const CONTRACTS: [(&str, Contract); 2] = [
     ),
 ];
 
-/// How fast (m/s) an ego may be when it stops going.
+/// Maximum speed (m/s) of the ego at the end of a plan to go.
 const FASTEST: f64 = 20.0;
 
 /// Options of `cede verify margins`.
 #[derive(Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Margins {
-    /// Boxes of inputs to bound for each predicate, at most: with more the bounds are sharper.
+    /// Maximum number of input boxes per predicate; more boxes give sharper bounds.
     #[arg(long, default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..))]
     boxes: u64,
     #[command(flatten)]
@@ -43,8 +43,8 @@ pub(crate) struct Margins {
     json: bool,
 }
 
-/// A predicate under a contract, and what is known of it.
-struct Row {
+/// A predicate under a contract, with its bound.
+struct MarginRow {
     contract: &'static str,
     predicate: Predicate,
     slack: f32,
@@ -57,12 +57,12 @@ impl Margins {
         self.threads.start()?;
         let short = shortfall(&Contract::WORST_CASE);
         let rows = self.rows();
-        // A reader that has seen enough may close the pipe.
+        // A closed pipe (`| head`) is not an error.
         let _ = writeln!(std::io::stdout(), "{}", self.told(&rows, short));
         let mut open: Vec<String> = rows
             .iter()
             .filter(|row| !row.shown())
-            .map(Row::open)
+            .map(MarginRow::open)
             .collect();
         if short * FASTEST > f64::from(INFLATION) {
             open.push(format!("plans go {short:e} s too short"));
@@ -74,13 +74,13 @@ impl Margins {
         }
     }
 
-    fn rows(&self) -> Vec<Row> {
+    fn rows(&self) -> Vec<MarginRow> {
         let all = CONTRACTS
             .iter()
             .flat_map(|contract| Predicate::ALL.map(|predicate| (contract, predicate)));
         all.map(|((name, contract), predicate)| {
             eprintln!("{}, {name} …", predicate.name());
-            Row {
+            MarginRow {
                 contract: name,
                 predicate,
                 slack: contract.slack,
@@ -90,16 +90,16 @@ impl Margins {
         .collect()
     }
 
-    fn told(&self, rows: &[Row], short: f64) -> String {
+    fn told(&self, rows: &[MarginRow], short: f64) -> String {
         if self.json {
-            let rows: Vec<_> = rows.iter().map(Row::json).collect();
+            let rows: Vec<_> = rows.iter().map(MarginRow::json).collect();
             return serde_json::json!({ "margins": rows, "going_short_s": short }).to_string();
         }
         let mut lines = vec![format!(
             "{:<26} {:<38} {:>9} {:>11} {:>8} {:>9}",
             "predicate", "contract", "boxes", "at most, mm", "met, mm", "slack, mm"
         )];
-        lines.extend(rows.iter().map(Row::text));
+        lines.extend(rows.iter().map(MarginRow::text));
         let (micros, mm) = (1e6 * short, 1e3 * short * FASTEST);
         lines.push(format!(
             "Plans go at most {micros:.1} µs too short, for every f32 up to a minute: {mm:.3} mm at {FASTEST} m/s, of {:.0} mm by which footprints are inflated.",
@@ -109,7 +109,7 @@ impl Margins {
     }
 }
 
-impl Row {
+impl MarginRow {
     fn shown(&self) -> bool {
         self.bound.covered_by(self.slack)
     }
@@ -131,7 +131,7 @@ impl Row {
         )
     }
 
-    /// Where the largest error may be.
+    /// The inputs with the largest error.
     fn open(&self) -> String {
         let inputs = self.predicate.inputs().iter().zip(self.bound.worst);
         let ranges: Vec<String> = inputs

@@ -11,7 +11,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// What `cede help verify network` says beside the options.
+/// The text below the options in `cede help verify network`.
 const HELP: &str = "\
 The answer is about the network's real-number semantics: the exact values of its weights, and no rounding.
 First line of stdout: unsat (proved), sat (refuted; a witness follows in the VNN-COMP format), timeout or unknown.";
@@ -26,7 +26,7 @@ pub(crate) struct Network {
     /// The property, VNN-LIB 1.0.
     #[arg(long, value_name = "FILE")]
     vnnlib: PathBuf,
-    /// Give up after so many seconds.
+    /// Time limit in seconds.
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
     timeout: f64,
     #[command(flatten)]
@@ -34,8 +34,8 @@ pub(crate) struct Network {
     /// Seed of the search for counterexamples.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// What to cut regions across: the inputs, the phases of ReLUs, or whichever suits the
-    /// number of inputs.
+    /// What to split regions by: inputs, phases of ReLUs, or the better of both for the number of
+    /// inputs.
     #[arg(long, value_enum, default_value_t = Cut::Auto)]
     branching: Cut,
     /// Write a certificate of `unsat` for `cede verify check`.
@@ -93,7 +93,7 @@ impl Network {
                 .map_err(Failure::Input)?;
         }
         let seconds = start.elapsed().as_secs_f64();
-        // A reader that has seen enough may close the pipe.
+        // A closed pipe (`| head`) is not an error.
         let _ = writeln!(
             std::io::stdout(),
             "{}",

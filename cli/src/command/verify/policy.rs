@@ -12,29 +12,28 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// What `cede help verify policy` says beside the options.
+/// The text below the options in `cede help verify policy`.
 const HELP: &str = "\
-A proof is about what the controller computes in f32; a refutation is a state at which it was run.
+A proof is about the controller's f32 arithmetic; a refutation is a state at which the controller was run.
 Exit code 1 if a property is not proved.";
 
-/// What is claimed of the embedded policy.
+/// The claimed properties of the embedded policy.
 const PROPERTIES: &str = include_str!("../../../../docs/safety/policy.toml");
 
 /// Options of `cede verify policy`.
 #[derive(Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Policy {
-    /// The policy (`.cede`); the embedded one if none is given.
+    /// The policy (`.cede`); by default the embedded one.
     #[arg(long, value_name = "FILE")]
     weights: Option<PathBuf>,
-    /// The properties (TOML); those of `docs/safety/policy.toml`, as they were when this program
-    /// was built, if none are given.
+    /// The properties (TOML); by default those of `docs/safety/policy.toml` at the time of the build.
     #[arg(long, value_name = "FILE")]
     properties: Option<PathBuf>,
-    /// Give up on a property after so many seconds.
+    /// Time limit per property in seconds.
     #[arg(long, value_name = "SECONDS", default_value_t = 60)]
     timeout: u64,
-    /// Have the independent checker go over every proof.
+    /// Check every proof with the independent checker.
     #[arg(long)]
     check: bool,
     /// Also find the largest region, scaled about its centre, on which each property is proved.
@@ -55,8 +54,8 @@ impl Policy {
         let subject = named(place, Subject::new(weights).into_diagnostic())?;
         let properties = self.properties()?;
         self.threads.start()?;
-        let rows: Vec<Row<'_>> = properties.iter().map(|p| self.row(&subject, p)).collect();
-        // A reader that has seen enough may close the pipe.
+        let rows: Vec<PropertyRow<'_>> = properties.iter().map(|p| self.row(&subject, p)).collect();
+        // A closed pipe (`| head`) is not an error.
         let _ = writeln!(std::io::stdout(), "{}", self.told(&subject, &rows));
         let open: Vec<&str> = rows
             .iter()
@@ -80,33 +79,36 @@ impl Policy {
         Ok(named(path, properties)?.property)
     }
 
-    fn row<'p>(&self, subject: &Subject<'_>, property: &'p StateProperty) -> Row<'p> {
+    fn row<'p>(&self, subject: &Subject<'_>, property: &'p StateProperty) -> PropertyRow<'p> {
         let limit = Duration::from_secs(self.timeout);
         let settled = subject.settle(property, Instant::now() + limit, self.check);
         let largest = self
             .sweep
             .then(|| subject.largest_scale(property, Instant::now() + limit));
-        Row {
+        PropertyRow {
             property,
             settled,
             largest,
         }
     }
 
-    fn told(&self, subject: &Subject<'_>, rows: &[Row<'_>]) -> String {
+    fn told(&self, subject: &Subject<'_>, rows: &[PropertyRow<'_>]) -> String {
         if self.json {
             let perspective = match subject.perspective() {
                 Perspective::Joint => "joint",
                 Perspective::Ego => "ego",
             };
-            let rows: Vec<_> = rows.iter().map(Row::json).collect();
+            let rows: Vec<_> = rows.iter().map(PropertyRow::json).collect();
             return serde_json::json!({ "semantics": "f32", "perspective": perspective, "properties": rows }).to_string();
         }
-        rows.iter().map(Row::text).collect::<Vec<_>>().join("\n")
+        rows.iter()
+            .map(PropertyRow::text)
+            .collect::<Vec<_>>()
+            .join("\n")
     }
 }
 
-/// The words of a weights file, the embedded one if no `path` is given, and what to call it.
+/// The words of a weights file with its name; without a `path` those of the embedded policy.
 pub(super) fn policy_words(path: Option<&Path>) -> Result<(&Path, Vec<u32>), Failure> {
     let Some(path) = path else {
         let embedded = cede_controller::policy::embedded::words().to_vec();
@@ -122,13 +124,14 @@ pub(super) fn named<T>(path: &Path, result: miette::Result<T>) -> Result<T, Fail
         .map_err(Failure::Input)
 }
 
-struct Row<'p> {
+/// A property with its result.
+struct PropertyRow<'p> {
     property: &'p StateProperty,
     settled: Settled,
     largest: Option<f64>,
 }
 
-impl Row<'_> {
+impl PropertyRow<'_> {
     fn word(&self) -> &'static str {
         match self.settled.finding {
             Finding::Proved => "proved",

@@ -12,25 +12,24 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// What `cede help verify reach` says beside the options.
+/// The text below the options in `cede help verify reach`.
 const HELP: &str = "\
-From all states of a region. Exit code 1 if a scenario's claim is not proved.";
+Starts from all states of a region. Exit code 1 if a scenario's claim is not proved.";
 
-/// What is claimed of the embedded policy behind its shield.
+/// The claims about the embedded policy with its shield.
 const SCENARIOS: &str = include_str!("../../../../docs/safety/reach.toml");
 
 /// Options of `cede verify reach`.
 #[derive(Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Reach {
-    /// The policy (`.cede`); the embedded one if none is given.
+    /// The policy (`.cede`); by default the embedded one.
     #[arg(long, value_name = "FILE")]
     weights: Option<PathBuf>,
-    /// The scenarios (TOML); those of `docs/safety/reach.toml`, as they were when this program was
-    /// built, if none are given.
+    /// The scenarios (TOML); by default those of `docs/safety/reach.toml` at the time of the build.
     #[arg(long, value_name = "FILE")]
     scenarios: Option<PathBuf>,
-    /// Give up on a scenario after so many seconds.
+    /// Time limit per scenario in seconds.
     #[arg(long, value_name = "SECONDS", default_value_t = 120)]
     timeout: u64,
     #[command(flatten)]
@@ -54,7 +53,7 @@ impl Reach {
             (scenario, settled)
         };
         let settled: Vec<(Scenario, Settled)> = scenarios.into_iter().map(settle).collect();
-        // A reader that has seen enough may close the pipe.
+        // A closed pipe (`| head`) is not an error.
         let _ = writeln!(std::io::stdout(), "{}", self.told(&settled));
         let open: Vec<&str> = settled
             .iter()

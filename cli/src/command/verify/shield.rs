@@ -1,4 +1,4 @@
-//! `cede verify shield`: what the shield would have allowed recorded drivers.
+//! `cede verify shield`: the share of recorded steps that the shield accepts.
 
 use crate::failure::Failure;
 use crate::report::{Report, command};
@@ -10,7 +10,7 @@ use clap::Args;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-/// What `cede help verify shield` says beside the options.
+/// The text below the options in `cede help verify shield`.
 const HELP: &str = "\
 Exit code 1 if the share of recorded steps that the shield accepts is below 99.5 % at crossings or 99 % at merges
 under the worst-case contract.";
@@ -25,10 +25,10 @@ pub(crate) struct Shield {
     /// Site of the recordings.
     #[arg(long, default_value = "EP0")]
     site: String,
-    /// Writes the shares for other accelerations and ego brakings to this CSV file.
+    /// Also write the shares for other values of acceleration and braking to this CSV file.
     #[arg(long, value_name = "FILE")]
     sweep: Option<PathBuf>,
-    /// Draws the same on a page: one HTML file.
+    /// Also draw these shares on a page: one HTML file.
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
 }
@@ -42,7 +42,7 @@ impl Shield {
         println!("contract          kind       role    steps  accepted");
         let mut worst = Vec::new();
         for (name, contract) in contracts() {
-            // The named contracts are in range.
+            // Every named contract is valid.
             let rows = transparency(&encounters, contract).unwrap_or_default();
             for row in &rows {
                 let (kind, role) = (format!("{:?}", row.kind), format!("{:?}", row.role));

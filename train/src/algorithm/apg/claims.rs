@@ -1,61 +1,29 @@
-//! Claims in the loss: what `cede verify policy` will ask of a policy, as a cost of breaking it.
+//! Properties in the loss: the violation of the claims that `cede verify policy` checks, as a cost.
 //!
-//! Every update asks each claim at fresh states of its region (faces and corners more often than
-//! chance would) and at hard ones, which climb to where the claim is broken the most: so training
-//! meets the counterexamples that the verifier would find. A claim about slopes is asked by a
-//! difference quotient of what the verifier bounds: the mean before the squashing, whose slope has
-//! the sign of the acceleration's and three times of which is never less steep.
+//! Every update evaluates each claim at random states of its region, with faces and corners
+//! over-represented, and at adversarial states, which climb towards the largest violation by
+//! gradient ascent. Training thus meets the counterexamples that the verifier would find. A claim
+//! about a slope is evaluated as a difference quotient of the mean before the squashing, because the
+//! verifier bounds that slope: it has the sign of the acceleration's slope, and three times it is at
+//! least as steep.
 
+mod question;
+
+use crate::algorithm::apg::claims::question::{Probe, Question, term};
+use crate::algorithm::apg::settings::ClaimSettings;
 use crate::driving::inputs::Inputs;
-use crate::driving::slopes::slopes;
 use crate::nn::network::{Delta, Network, Tape};
-use cede_controller::policy::MAX_ACCELERATION;
-use cede_formats::property::{Claim, Place, Setting, StateProperty};
+use cede_formats::property::{Place, StateProperty};
 use rand::RngExt;
 use rand_pcg::Pcg64;
-use serde::{Deserialize, Serialize};
 
-/// How claims are learned.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Settings {
-    /// Weight of the claims' cost beside that of driving unlike the humans.
-    pub weight: f32,
-    /// What is asked beyond a claimed acceleration (m/s²), so that there is something left to prove.
-    pub margin: f32,
-    /// The same beyond a claimed slope (m/s² per metre or per m/s).
-    pub slope_margin: f32,
-    /// Fresh states of each claim in an update.
-    pub fresh: usize,
-    /// Hard states of each claim, kept from update to update.
-    pub hard: usize,
-}
+/// Probability that an adversarial state is replaced by a random one after an update.
+const RESTART: f32 = 0.05;
 
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            weight: 3.0,
-            margin: 0.2,
-            slope_margin: 0.1,
-            fresh: 16,
-            hard: 16,
-        }
-    }
-}
+/// The adversarial states of each claim; part of a run's progress.
+pub type AdversarialStates = Vec<Vec<Place>>;
 
-/// Half the step (m or m/s) of a difference quotient.
-const HALF_STEP: f64 = 0.05;
-/// Probability that a fresh state lies on a given side of its region.
-const ON_A_SIDE: f32 = 0.25;
-/// A hard state climbs by at most this share of the region's widths in an update.
-const CLIMB: f64 = 0.1;
-/// Probability that a hard state begins anew after an update.
-const BEGINS_ANEW: f32 = 0.05;
-
-/// The hard states of each claim: part of a run's progress.
-pub type Hard = Vec<Vec<Place>>;
-
-/// Claims that can be broken, each in one setting, ready to be asked.
+/// The claims of all properties, with the buffers for their evaluation.
 #[derive(Clone, Debug, Default)]
 pub struct Claims {
     questions: Vec<Question>,
@@ -63,113 +31,68 @@ pub struct Claims {
     delta: Delta,
 }
 
-/// One claim in one setting.
-#[derive(Clone, Debug)]
-struct Question {
-    claim: Claim,
-    region: [[f64; 2]; 4],
-    setting: Setting,
-}
-
-/// The runs of the network that answer a question at a place: the claim's excess is
-/// `sign`·(Σ share·a − limit), and it is broken where that is positive.
-struct Answer {
-    question: usize,
-    place: Place,
-    /// First of its rows.
-    row: usize,
-    /// Where the network is run, and the share of that acceleration.
-    runs: Vec<(Place, f32)>,
-    /// Whether the mean is squashed to an acceleration.
-    squashed: bool,
-    margin: f32,
-}
-
 impl Claims {
-    /// The claims of `properties` that any policy could break at all.
+    /// The claims of `properties` that a policy can violate.
     #[must_use]
     pub fn new(properties: &[StateProperty]) -> Self {
-        let limit = f64::from(MAX_ACCELERATION);
-        let open = properties.iter().filter(|property| match property.claim {
-            Claim::AccelerationAtMost(most) => most < limit,
-            Claim::AccelerationAtLeast(least) => least > -limit,
-            Claim::RisesAtLeast { .. } | Claim::ChangesAtMost { .. } => true,
-        });
-        let questions = open.flat_map(|property| {
-            property.settings().into_iter().map(|setting| Question {
-                claim: property.claim,
-                region: property.region(),
-                setting,
-            })
-        });
         Self {
-            questions: questions.collect(),
+            questions: properties.iter().flat_map(Question::all).collect(),
             ..Self::default()
         }
     }
 
-    /// Adds the derivatives of the claims' cost (for each claim and setting the mean shortfall from
-    /// the claim with its margin) with respect to the parameters to `gradient`, moves the hard
-    /// states on, and returns the cost. Costs a run of the network and two ways back for each state.
+    /// Returns the cost of violating the claims: for each claim and setting the mean violation
+    /// including the margin. Adds its derivatives with respect to the parameters to `gradient`, and
+    /// moves the adversarial states.
+    ///
+    /// Takes one forward and two backward passes for each state.
     pub fn learn(
         &mut self,
-        settings: &Settings,
+        settings: &ClaimSettings,
         network: &Network,
         inputs: &Inputs,
-        hard: &mut Hard,
+        adversarial: &mut AdversarialStates,
         random: &mut Pcg64,
         gradient: &mut [f32],
     ) -> f32 {
         if self.questions.is_empty() {
             return 0.0;
         }
-        hard.resize_with(self.questions.len(), Vec::new);
-        let (mut answers, mut rows, mut runs) = (Vec::new(), Vec::new(), 0);
-        for (question, hard) in hard.iter_mut().enumerate() {
-            let asked = &self.questions[question];
-            hard.resize_with(settings.hard, || asked.fresh(random));
-            let fresh = (0..settings.fresh).map(|_| asked.fresh(random));
-            for place in hard.iter().copied().chain(fresh) {
-                let answer = asked.ask(question, place, runs, settings);
-                for (place, _) in &answer.runs {
-                    inputs.append(&asked.setting.pair(*place), &mut rows);
-                }
-                runs += answer.runs.len();
-                answers.push(answer);
-            }
-        }
+        adversarial.resize_with(self.questions.len(), Vec::new);
+        let (probes, rows) = self.probes(settings, inputs, adversarial, random);
         let output = network.forward(&rows, &mut self.tape);
+        let runs: usize = probes.iter().map(|probe| probe.runs.len()).sum();
         let width = output.len() / runs.max(1);
-        // What each run counts, and its derivative by the mean.
-        let counted: Vec<(f32, f32)> = answers
+        let terms: Vec<(f32, f32)> = probes
             .iter()
-            .flat_map(|answer| answer.runs.iter().map(|_| answer.squashed))
+            .flat_map(|probe| probe.runs.iter().map(|_| probe.squashed))
             .zip(output.chunks_exact(width.max(1)))
-            .map(|(squashed, row)| count(row[0], squashed))
+            .map(|(squashed, row)| term(row[0], squashed))
             .collect();
-        let excesses: Vec<(f32, f32)> = answers
+        let violations: Vec<(f32, f32)> = probes
             .iter()
-            .map(|answer| answer.excess(&self.questions[answer.question].claim, &counted))
+            .map(|probe| probe.violation(&self.questions[probe.question], &terms))
             .collect();
 
         let share = settings.weight / (settings.hard + settings.fresh).max(1) as f32;
         let mut cost = 0.0;
+        for (probe, (violation, _)) in probes.iter().zip(&violations) {
+            cost += share * (violation + probe.margin).max(0.0);
+        }
+        // The derivatives of Σ weight(k)·sum(k) over all probes k with respect to the outputs.
         let fill = |delta: &mut Delta, weight: &dyn Fn(usize) -> f32| {
             delta.values.clear();
             delta.values.resize(runs * width, 0.0);
-            for (k, answer) in answers.iter().enumerate() {
-                for (i, (_, part)) in answer.runs.iter().enumerate() {
-                    let row = answer.row + i;
-                    delta.values[row * width] = weight(k) * part * counted[row].1;
+            for (k, probe) in probes.iter().enumerate() {
+                for (i, (_, part)) in probe.runs.iter().enumerate() {
+                    let row = probe.row + i;
+                    delta.values[row * width] = weight(k) * part * terms[row].1;
                 }
             }
         };
-        for (answer, (excess, _)) in answers.iter().zip(&excesses) {
-            cost += share * (excess + answer.margin).max(0.0);
-        }
         fill(&mut self.delta, &|k| {
-            let (excess, sign) = excesses[k];
-            if excess + answers[k].margin > 0.0 {
+            let (violation, sign) = violations[k];
+            if violation + probes[k].margin > 0.0 {
                 share * sign
             } else {
                 0.0
@@ -177,137 +100,70 @@ impl Claims {
         });
         network.backward(&self.tape, &mut self.delta, Some(gradient));
 
-        fill(&mut self.delta, &|k| excesses[k].1);
+        fill(&mut self.delta, &|k| violations[k].1);
         network.backward(&self.tape, &mut self.delta, None);
-        let mut answers = answers.iter().zip(&excesses);
-        for (question, hard) in self.questions.iter().zip(hard) {
-            let mut hardest = f32::NEG_INFINITY;
-            let mut easiest = (f32::INFINITY, 0);
-            for (slot, (answer, (excess, _))) in answers.by_ref().take(settings.hard).enumerate() {
-                if *excess < easiest.0 {
-                    easiest = (*excess, slot);
-                }
-                let up = answer.uphill(question, inputs, &self.delta);
-                hard[slot] = if random.random::<f32>() < BEGINS_ANEW {
-                    question.fresh(random)
-                } else {
-                    question.climbed(answer.place, up, random)
-                };
-            }
-            for (answer, (excess, _)) in answers.by_ref().take(settings.fresh) {
-                if *excess > hardest.max(easiest.0) && settings.hard > 0 {
-                    hardest = *excess;
-                    hard[easiest.1] = answer.place;
-                }
-            }
-        }
+        self.climb(settings, inputs, &probes, &violations, adversarial, random);
         cost
     }
-}
 
-/// The acceleration (m/s²) of a mean, or what bounds its slope, and the derivative by the mean.
-fn count(mean: f32, squashed: bool) -> (f32, f32) {
-    if squashed {
-        let a = MAX_ACCELERATION * libm::tanhf(mean);
-        (a, MAX_ACCELERATION - a * a / MAX_ACCELERATION)
-    } else {
-        (MAX_ACCELERATION * mean, MAX_ACCELERATION)
-    }
-}
-
-impl Question {
-    /// A random state of the region.
-    fn fresh(&self, random: &mut Pcg64) -> Place {
-        self.region.map(|[least, most]| {
-            let side: f32 = random.random();
-            if side < ON_A_SIDE {
-                least
-            } else if side < 2.0 * ON_A_SIDE {
-                most
-            } else {
-                least + (most - least) * random.random::<f64>()
+    /// The evaluations of every claim, first at its adversarial, then at new random states, and the
+    /// network's inputs for them.
+    fn probes(
+        &self,
+        settings: &ClaimSettings,
+        inputs: &Inputs,
+        adversarial: &mut AdversarialStates,
+        random: &mut Pcg64,
+    ) -> (Vec<Probe>, Vec<f32>) {
+        let (mut probes, mut rows, mut runs) = (Vec::new(), Vec::new(), 0);
+        for (index, (question, adversarial)) in self.questions.iter().zip(adversarial).enumerate() {
+            adversarial.resize_with(settings.hard, || question.random_state(random));
+            let fresh = (0..settings.fresh).map(|_| question.random_state(random));
+            for place in adversarial.iter().copied().chain(fresh) {
+                let probe = question.probe(index, place, runs, settings);
+                for (place, _) in &probe.runs {
+                    inputs.append(&question.setting.pair(*place), &mut rows);
+                }
+                runs += probe.runs.len();
+                probes.push(probe);
             }
-        })
+        }
+        (probes, rows)
     }
 
-    fn ask(&self, question: usize, place: Place, row: usize, settings: &Settings) -> Answer {
-        let (runs, squashed, margin) = match self.claim {
-            Claim::AccelerationAtMost(_) | Claim::AccelerationAtLeast(_) => {
-                (vec![(place, 1.0)], true, settings.margin)
-            }
-            Claim::RisesAtLeast { with, .. } | Claim::ChangesAtMost { with, .. } => {
-                let [least, most] = self.region[with.index()];
-                let at = |x: f64| {
-                    let mut moved = place;
-                    moved[with.index()] = x.clamp(least, most);
-                    moved
+    /// Moves every adversarial state a step of gradient ascent, or replaces it by a random state. A
+    /// random state of this update with a larger violation replaces the weakest adversarial one.
+    fn climb(
+        &self,
+        settings: &ClaimSettings,
+        inputs: &Inputs,
+        probes: &[Probe],
+        violations: &[(f32, f32)],
+        adversarial: &mut AdversarialStates,
+        random: &mut Pcg64,
+    ) {
+        let mut probes = probes.iter().zip(violations);
+        for (question, adversarial) in self.questions.iter().zip(adversarial) {
+            let mut weakest = (f32::INFINITY, 0);
+            for (slot, (probe, (violation, _))) in probes.by_ref().take(settings.hard).enumerate() {
+                if *violation < weakest.0 {
+                    weakest = (*violation, slot);
+                }
+                let up = probe.uphill(question, inputs, &self.delta);
+                adversarial[slot] = if random.random::<f32>() < RESTART {
+                    question.random_state(random)
+                } else {
+                    question.climbed(probe.place, up, random)
                 };
-                let x = place[with.index()];
-                let (low, high) = (at(x - HALF_STEP), at(x + HALF_STEP));
-                let step = (high[with.index()] - low[with.index()]).max(1e-3) as f32;
-                (
-                    vec![(low, -1.0 / step), (high, 1.0 / step)],
-                    false,
-                    settings.slope_margin,
-                )
             }
-        };
-        Answer {
-            question,
-            place,
-            row,
-            runs,
-            squashed,
-            margin,
-        }
-    }
-
-    /// A step from `place` in the direction `up`, within the region.
-    fn climbed(&self, place: Place, up: [f32; 4], random: &mut Pcg64) -> Place {
-        let length = CLIMB * random.random::<f64>();
-        std::array::from_fn(|i| {
-            let [least, most] = self.region[i];
-            let step = if up[i] == 0.0 {
-                0.0
-            } else {
-                length * (most - least) * f64::from(up[i].signum())
-            };
-            (place[i] + step).clamp(least, most)
-        })
-    }
-}
-
-impl Answer {
-    /// By how much the claim is broken, and the sign of its dependence on the weighted sum of
-    /// what its runs count.
-    fn excess(&self, claim: &Claim, counted: &[(f32, f32)]) -> (f32, f32) {
-        let runs = self.runs.iter().zip(&counted[self.row..]);
-        let value: f32 = runs.map(|((_, share), (a, _))| share * a).sum();
-        match *claim {
-            Claim::AccelerationAtMost(most) => (value - most as f32, 1.0),
-            Claim::AccelerationAtLeast(least) => (least as f32 - value, -1.0),
-            Claim::RisesAtLeast { slope, .. } => (slope as f32 - value, -1.0),
-            Claim::ChangesAtMost { slope, .. } => (value.abs() - slope as f32, value.signum()),
-        }
-    }
-
-    /// The derivatives of the excess with respect to the place, from those with respect to the
-    /// network's inputs.
-    fn uphill(&self, question: &Question, inputs: &Inputs, delta: &Delta) -> [f32; 4] {
-        let count = inputs.scales.len();
-        let mut up = [0.0; 4];
-        for (i, (place, _)) in self.runs.iter().enumerate() {
-            let start = (self.row + i) * count;
-            let by_inputs = delta.values[start..start + count].iter();
-            let pair = question.setting.pair(*place);
-            let scaled = by_inputs.zip(&inputs.scales);
-            for ((d, scale), slope) in scaled.zip(slopes(inputs.features(), &pair)) {
-                for (up, slope) in up.iter_mut().zip(slope) {
-                    *up += d * scale * slope;
+            let mut strongest = f32::NEG_INFINITY;
+            for (probe, (violation, _)) in probes.by_ref().take(settings.fresh) {
+                if *violation > strongest.max(weakest.0) && settings.hard > 0 {
+                    strongest = *violation;
+                    adversarial[weakest.1] = probe.place;
                 }
             }
         }
-        up
     }
 }
 
@@ -356,20 +212,20 @@ mod tests {
 
     #[test]
     fn the_gradient_agrees_with_finite_differences() {
-        let settings = Settings {
+        let settings = ClaimSettings {
             fresh: 20,
-            ..Settings::default()
+            ..ClaimSettings::default()
         };
         let (mut network, inputs) = (network(1), inputs());
         let mut claims = Claims::new(&properties());
         assert_eq!(claims.questions.len(), 4, "3 m/s² cannot be exceeded");
         let mut learn = |network: &Network, gradient: &mut [f32]| {
-            let (mut hard, mut random) = (Hard::new(), Pcg64::seed_from_u64(5));
+            let (mut adversarial, mut random) = (AdversarialStates::new(), Pcg64::seed_from_u64(5));
             claims.learn(
                 &settings,
                 network,
                 &inputs,
-                &mut hard,
+                &mut adversarial,
                 &mut random,
                 gradient,
             )
@@ -395,10 +251,10 @@ mod tests {
     }
 
     #[test]
-    fn a_network_learns_what_is_claimed_and_hard_states_stay_in_their_regions() {
+    fn a_network_learns_the_claims_and_adversarial_states_stay_in_their_regions() {
         let (mut network, inputs) = (network(2), inputs());
-        let (mut claims, settings) = (Claims::new(&properties()), Settings::default());
-        let (mut hard, mut random) = (Hard::new(), Pcg64::seed_from_u64(6));
+        let (mut claims, settings) = (Claims::new(&properties()), ClaimSettings::default());
+        let (mut adversarial, mut random) = (AdversarialStates::new(), Pcg64::seed_from_u64(6));
         let mut adam = Adam::new(network.parameters().len());
         let mut costs = Vec::new();
         for _ in 0..400 {
@@ -407,7 +263,7 @@ mod tests {
                 &settings,
                 &network,
                 &inputs,
-                &mut hard,
+                &mut adversarial,
                 &mut random,
                 &mut gradient,
             );
@@ -420,12 +276,12 @@ mod tests {
             costs[0],
             costs[399]
         );
-        for (question, hard) in claims.questions.iter().zip(&hard) {
+        for (question, states) in claims.questions.iter().zip(&adversarial) {
             let within = |place: &Place| {
                 let sides = place.iter().zip(question.region);
                 sides.into_iter().all(|(x, [lo, hi])| (lo..=hi).contains(x))
             };
-            assert!(hard.len() == settings.hard && hard.iter().all(within));
+            assert!(states.len() == settings.hard && states.iter().all(within));
         }
     }
 }

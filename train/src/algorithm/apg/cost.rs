@@ -1,4 +1,4 @@
-//! What it costs to drive unlike the recorded humans, and its derivatives.
+//! The cost of deviating from the recorded drivers, and its derivatives.
 
 use cede_controller::Footprint;
 use cede_controller::kinematics::State;
@@ -6,22 +6,22 @@ use cede_controller::separation::OrientedBox;
 use cede_data::{Encounter, Role};
 use serde::{Deserialize, Serialize};
 
-/// What it costs, a step, to drive unlike the recorded humans.
+/// The cost per step of deviating from the recorded drivers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Cost {
-    /// Metres up to which an error in position costs half its square; beyond, it costs in proportion.
+    /// Error in position (m) up to which the cost is half its square; beyond it the cost is linear.
     pub huber: f32,
     /// Weight of the squared error in speed, in s².
     pub speed: f32,
-    /// Weight of the squared error of what each expects of the other's acceleration, in s⁴.
+    /// Weight of the squared error of each vehicle's prediction of the other's acceleration, in s⁴.
     pub expectation: f32,
-    /// Weight of arriving out of the recorded order: metres that the first is short of its conflict
-    /// point, times metres that the second is too near to its own.
+    /// Weight of a wrong order of arrival: the distance (m) that the recorded first vehicle has left to
+    /// its conflict point, times the distance (m) by which the second is too close to its own.
     pub order: f32,
     /// Weight of the squared shortfall of the distance between the footprints.
     pub contact: f32,
-    /// Metres between the footprints below which closeness costs.
+    /// Distance (m) between the footprints below which it counts as too short.
     pub gap: f32,
 }
 
@@ -38,12 +38,12 @@ impl Default for Cost {
     }
 }
 
-/// Metres by which the second vehicle should be short of its conflict point when the first arrives,
-/// and the most that the first one's own shortfall counts.
+/// Distance (m) that the second vehicle should keep to its conflict point until the first arrives, and
+/// the upper limit of the first one's remaining distance in the cost.
 const ORDER_MARGIN: f32 = 2.0;
 /// Steps past the recorded end up to which the order counts.
 const ORDER_OVERTIME: usize = 20;
-/// Footprints whose centres are farther apart (m) cannot be near contact.
+/// The distance between footprints is not computed if their centres are farther apart than this (m).
 const OUT_OF_REACH: f32 = 7.0;
 
 /// Derivatives of a cost with respect to the states (s, v) of both vehicles.
@@ -69,7 +69,7 @@ impl Cost {
         total
     }
 
-    /// Distance from the record in position and speed, while it lasts.
+    /// The deviation from the record in position and speed, as far as there is a record.
     fn imitation(
         &self,
         encounter: &Encounter,
@@ -91,7 +91,8 @@ impl Cost {
         total
     }
 
-    /// The vehicle that was first in the record has not arrived, and the other is about to.
+    /// The order of arrival: the vehicle that was first in the record has not arrived, and the other is
+    /// close to its conflict point.
     fn disorder(
         &self,
         encounter: &Encounter,
@@ -119,7 +120,7 @@ impl Cost {
         self.order * counted * near
     }
 
-    /// The footprints are closer to each other than they should be.
+    /// The distance between the footprints, where it is too short.
     fn closeness(&self, encounter: &Encounter, states: [State; 2], by: &mut ByStates) -> f32 {
         let area = |i: usize, ds: f32| {
             let pose = encounter.participants[i].route.pose(states[i].s + ds);

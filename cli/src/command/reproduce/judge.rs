@@ -1,0 +1,129 @@
+//! Judges the trained policies, without and with the shield, and the baselines.
+
+use super::job::{Job, Trained};
+use super::plan::splits;
+use crate::drivers::Contender;
+use crate::failure::Failure;
+use crate::interrupt;
+use crate::judge::{ModeName, Plan, UntilName};
+use cede_controller::{Contract, Policy};
+use cede_data::{Dataset, Encounter};
+use cede_sim::driver::{Baseline, Cede, DriverFactory, PolicyAlone};
+use cede_sim::episode::Until;
+use cede_sim::evaluate::{Drive, Label, Mode, Protocol, Selection, TableRow, evaluate};
+use cede_train::run::Algorithm;
+
+/// No shield, and one with each contract; by their names in the table.
+const SHIELDS: [(&str, Option<Contract>); 3] = [
+    ("off", None),
+    ("all-way stop", Some(Contract::ALL_WAY_STOP)),
+    ("worst case", Some(Contract::WORST_CASE)),
+];
+
+/// The episodes of one row and seed on one split.
+pub(super) struct Judged<'d> {
+    pub(super) seed: u64,
+    pub(super) drives: Vec<Drive<'d>>,
+    pub(super) row: TableRow,
+}
+
+/// What tells one [`Judged`] from another.
+#[derive(Clone, PartialEq)]
+struct Key<'j> {
+    algorithm: Algorithm,
+    seed: u64,
+    split: &'j str,
+    /// Its name in [`SHIELDS`].
+    shield: &'static str,
+}
+
+impl Key<'_> {
+    fn label(&self) -> Label<'_> {
+        Label {
+            driver: self.algorithm.name(),
+            split: self.split,
+            mode: "joint",
+            until: "conflict",
+            shield: self.shield,
+        }
+    }
+}
+
+/// Judges the policy of every job with every shield. The files of leave-one-file-out are merged into
+/// one row.
+///
+/// # Errors
+/// The user has interrupted the command.
+pub(super) fn policies<'d>(
+    jobs: &[Job<'d>],
+    trained: &[Trained],
+) -> Result<Vec<Judged<'d>>, Failure> {
+    let mut all: Vec<(Key<'_>, Vec<Drive<'d>>)> = Vec::new();
+    for (job, trained) in jobs.iter().zip(trained) {
+        for (split, encounters) in &job.judged {
+            for (shield, contract) in SHIELDS {
+                interrupt::check()?;
+                let drives = drive(trained.policy, contract, encounters, job.seed)?;
+                let key = Key {
+                    algorithm: job.row.algorithm,
+                    seed: job.seed,
+                    split,
+                    shield,
+                };
+                match all.iter_mut().find(|(known, _)| *known == key) {
+                    Some((_, known)) => known.extend(drives),
+                    None => all.push((key, drives)),
+                }
+            }
+        }
+    }
+    let judged = all.into_iter().map(|(key, drives)| Judged {
+        seed: key.seed,
+        row: TableRow::of(key.label(), &drives),
+        drives,
+    });
+    Ok(judged.collect())
+}
+
+fn drive<'d>(
+    policy: Policy<'static>,
+    contract: Option<Contract>,
+    encounters: &[&'d Encounter],
+    seed: u64,
+) -> Result<Vec<Drive<'d>>, Failure> {
+    let protocol = Protocol {
+        mode: Mode::Joint,
+        until: Until::Conflict,
+        seed,
+    };
+    let factory = factory(policy, contract)?;
+    Ok(evaluate(&*factory, encounters, protocol))
+}
+
+fn factory(
+    policy: Policy<'static>,
+    contract: Option<Contract>,
+) -> Result<Box<dyn DriverFactory>, Failure> {
+    let Some(contract) = contract else {
+        return Ok(Box::new(PolicyAlone::new(policy)));
+    };
+    let cede = Cede::new(policy, contract);
+    let cede = cede.map_err(|error| Failure::input(error, "report this as a bug"))?;
+    Ok(Box::new(cede))
+}
+
+/// How the baselines are judged.
+pub(super) fn baselines(dataset: &Dataset, leave_one_file_out: bool) -> Plan {
+    let splits = splits(dataset).into_iter().map(Selection::Split);
+    let folds = leave_one_file_out.then_some(Selection::LeaveOneFileOut);
+    Plan {
+        contenders: Baseline::ALL.map(Contender::Baseline).into(),
+        lenient: true,
+        selections: splits.chain(folds).collect(),
+        mode: ModeName::Joint,
+        partner: Baseline::Replay,
+        until: UntilName::Conflict,
+        shields: vec![None],
+        seed: 0,
+    }
+}

@@ -1,0 +1,33 @@
+//! What a run learns from.
+
+use crate::driving::episodes::Course;
+use cede_data::Encounter;
+use cede_formats::property::StateProperty;
+use cede_sim::ObservationModel;
+
+/// What a run learns from, prepared once.
+pub struct Lessons<'e> {
+    /// The encounters to imitate, as episodes.
+    pub courses: Vec<Course<'e>>,
+    /// The observations in all encounters: first the [`Lessons::own`] ones to imitate, then the
+    /// auxiliary ones, which only a refinement uses.
+    pub models: Vec<ObservationModel<'e>>,
+    /// Number of encounters to imitate; see [`Lessons::models`].
+    pub own: usize,
+    /// Properties that the policy shall have; only the analytic policy gradient learns them.
+    pub claims: Vec<StateProperty>,
+}
+
+impl<'e> Lessons<'e> {
+    /// Prepares the encounters to imitate and the auxiliary ones.
+    #[must_use]
+    pub fn new(own: &[&'e Encounter], auxiliary: &[&'e Encounter]) -> Self {
+        let all = own.iter().chain(auxiliary).copied();
+        Self {
+            courses: own.iter().map(|encounter| Course::new(encounter)).collect(),
+            models: all.map(ObservationModel::new).collect(),
+            own: own.len(),
+            claims: Vec::new(),
+        }
+    }
+}
