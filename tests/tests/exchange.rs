@@ -67,7 +67,7 @@ fn policies() -> Vec<Vec<u32>> {
 
 /// The features that the policy is told, raw.
 fn features(weights: &Weights<'_>, pair: &Pair) -> Vec<f32> {
-    weights.features.of(pair)[..weights.features.count()].to_vec()
+    weights.features().of(pair)[..weights.features().count()].to_vec()
 }
 
 fn assert_close(policy: &Policy<'_>, pair: &Pair, elsewhere: [f64; 2]) {

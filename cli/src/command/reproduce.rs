@@ -302,7 +302,7 @@ impl Args {
                     until: Until::Conflict,
                     seed: job.seed,
                 };
-                let factory = factory(trained.policy, contract)?;
+                let factory = factory(trained.policy, contract);
                 let drives = evaluate(&*factory, encounters, protocol);
                 let same = |j: &&mut Judged<'_>| {
                     (j.shield, &j.split, j.algorithm, j.seed)
@@ -381,14 +381,9 @@ fn label<'a>(algorithm: Algorithm, split: &'a str, shield: &'a str) -> Label<'a>
     }
 }
 
-fn factory(
-    policy: Policy<'static>,
-    contract: Option<Contract>,
-) -> Result<Box<dyn DriverFactory>, Failure> {
-    let Some(contract) = contract else {
-        return Ok(Box::new(PolicyAlone::new(policy)));
-    };
-    let cede = Cede::new(policy, contract);
-    let cede = cede.map_err(|error| Failure::input(error, "report this as a bug"))?;
-    Ok(Box::new(cede))
+fn factory(policy: Policy<'static>, contract: Option<Contract>) -> Box<dyn DriverFactory> {
+    match contract {
+        None => Box::new(PolicyAlone::new(policy)),
+        Some(contract) => Box::new(Cede::new(policy, contract)),
+    }
 }

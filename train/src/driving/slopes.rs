@@ -5,8 +5,8 @@
 //! derivative is zero, as is that of everything that depends on the route alone.
 
 use cede_controller::policy::features::{CREEP, HORIZON, MAX_FEATURES};
-use cede_controller::policy::pair::{Crosser, Leader, VehicleState};
 use cede_controller::policy::svo::MIN_DISTANCE;
+use cede_controller::{Crosser, Leader, VehicleState};
 use cede_controller::{FeatureSet, Pair};
 
 /// Derivatives of one feature with respect to the ego's distance (m) and speed (m/s), then the other's.
@@ -122,8 +122,8 @@ fn crosser(vehicle_state: &VehicleState, place: usize, slopes: &mut [Slope; MAX_
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cede_controller::policy::pair::{Part, RightOfWay};
     use cede_controller::{ConflictKind, Footprint, Point, Pose};
+    use cede_controller::{Part, RightOfWay};
 
     fn pair([d, v, other_d, other_v]: [f32; 4], surrounded: bool) -> Pair {
         let vehicle_state = |direction: Point, distance: f32, speed: f32| VehicleState {

@@ -75,7 +75,7 @@ fn features(set: FeatureSet, state: [Dual; STATE], setting: &Setting) -> Option<
             all.extend([exact(Dual::constant(far)), exact(v)]);
             all.extend([far, far, 0.0].map(|nobody| exact(Dual::constant(nobody))));
         }
-        FeatureSet::Raw => return None,
+        _ => return None,
     }
     Some(all)
 }
