@@ -12,7 +12,7 @@ use crate::shield::{Contract, Shield};
 use core::f32::consts::FRAC_PI_4;
 
 /// Acceleration (m/s²) that is proposed when there is nobody left to meet.
-const FREE: f32 = 1.0;
+pub const FREE: f32 = 1.0;
 
 /// Drives one vehicle among up to `N` others; `'w` is the life of the policy's weights.
 ///

@@ -88,7 +88,7 @@ mod real;
 pub mod separation;
 pub mod shield;
 
-pub use controller::Controller;
+pub use controller::{Controller, FREE};
 pub use decision::{Action, Breach, Cause, Decision, Intervention, Prediction, Reason};
 pub use geometry::{Footprint, Point, Pose};
 pub use junction::{
@@ -101,6 +101,7 @@ pub use policy::{
     TrafficContext, VehicleState, Weights, WeightsError,
 };
 pub use real::{Elementary, Real};
+pub use separation::OrientedBox;
 pub use shield::{
     Contract, ContractBuilder, ContractError, Ego, Follower, Other, Plan, Precedence, Shield,
 };

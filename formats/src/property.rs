@@ -1,6 +1,8 @@
 //! Properties of a policy as a readable file: what the verifier proves and training can aim at.
 
-use cede_controller::{ConflictKind, Footprint, Pair, Part, Point, Pose, RightOfWay, VehicleState};
+use cede_controller::{
+    ConflictKind, Footprint, Pair, Part, Point, Pose, Real, RightOfWay, VehicleState,
+};
 use serde::{Deserialize, Serialize};
 
 /// Ego's metres to its conflict point and speed in m/s, then the other's.
@@ -20,16 +22,22 @@ pub struct Setting {
 impl Setting {
     /// The pair of vehicles at a place (rounded to `f32`), nobody around them, as a left-turner sees it.
     #[must_use]
-    pub fn pair(&self, [d, v, other_d, other_v]: Place) -> Pair {
-        let vehicle_state = |distance: f64, speed: f64, turn: f32| VehicleState {
+    pub fn pair(&self, place: Place) -> Pair {
+        self.pair_of(place.map(|value| value as f32))
+    }
+
+    /// The same pair, its place in any number.
+    #[must_use]
+    pub fn pair_of<R: Real>(&self, [d, v, other_d, other_v]: [R; 4]) -> Pair<R> {
+        let vehicle_state = |distance, speed, turn: f32| VehicleState {
             pose: Pose {
-                position: Point::new(0.0, 0.0),
+                position: Point::new(R::of(0.0), R::of(0.0)),
                 direction: Point::new(1.0, 0.0),
             },
             // The feature is the sine of the angle from the direction to the exit.
             exit: Point::new((1.0 - turn * turn).max(0.0).sqrt(), turn),
-            speed: speed as f32,
-            distance: distance as f32,
+            speed,
+            distance,
             footprint: Footprint::PAPER,
             leader: None,
             crosser: None,
@@ -40,7 +48,7 @@ impl Setting {
             kind: self.kind,
             right_of_way: self.right_of_way,
             part: Part::Left,
-            last_svo: core::f32::consts::FRAC_PI_4,
+            last_svo: R::of(core::f32::consts::FRAC_PI_4),
         }
     }
 }

@@ -72,7 +72,7 @@ fn two_vehicles_at_rest_pass_by_precedence_and_may_wait_for_ever_without() {
     assert!(worst.cleared < worst.scenarios, "{worst:?}");
 }
 
-/// Of three and more some still block each other for ever; docs/shield.md says how.
+/// Of three and more some still block each other for ever; docs/theorem.md says how.
 #[test]
 fn several_vehicles_at_rest_pass_by_precedence() {
     for (vehicles, stuck) in [(3, 1), (6, 2)] {
@@ -85,7 +85,7 @@ fn several_vehicles_at_rest_pass_by_precedence() {
     }
 }
 
-/// The table of docs/shield.md: `cargo test --release -p cede-sim --test shield get_through -- --ignored --nocapture`.
+/// The table of docs/evidence.md: `cargo test --release -p cede-sim --test shield get_through -- --ignored --nocapture`.
 #[test]
 #[ignore = "prints a table, in half a minute"]
 fn how_many_get_through() {

@@ -72,7 +72,7 @@ fn features(weights: &Weights<'_>, pair: &Pair) -> Vec<f32> {
 
 fn assert_close(policy: &Policy<'_>, pair: &Pair, elsewhere: [f64; 2]) {
     for (here, there) in policy.act(pair).into_iter().zip(elsewhere) {
-        let features = policy.weights().features;
+        let features = policy.weights().features();
         let difference = (f64::from(here) - there).abs();
         assert!(difference < CLOSE, "{features:?}: {here} and {there}");
     }

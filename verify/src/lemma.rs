@@ -1,4 +1,4 @@
-//! The steps of the shield's theorem (`docs/shield.md`) as lemmas over the reals, for an SMT solver.
+//! The steps of the shield's theorem (`docs/theorem.md`) as lemmas over the reals, for an SMT solver.
 //!
 //! The shield's margins are generic over their numbers. Here they run on expressions, so what the
 //! solver is asked about is the code that flies, of a contract whose numbers are names: a lemma
@@ -29,7 +29,7 @@ pub use z3::{Answer, Quantity, Solver, SolverError, abandon};
 /// A step of the theorem.
 #[derive(Clone, Debug)]
 pub struct Lemma {
-    /// Its name in `docs/shield.md`.
+    /// Its name in `docs/theorem.md`.
     pub id: &'static str,
     /// What it says, in a line.
     pub says: &'static str,

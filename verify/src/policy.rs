@@ -10,9 +10,9 @@
 //! function; what the controller computes differs from that by no more than the stated rounding.
 
 mod check;
+mod enclosure;
 mod features;
 mod gradient;
-mod interval;
 mod response;
 mod search;
 
@@ -28,7 +28,7 @@ use features::Enclosed;
 pub struct Subject<'a> {
     weights: Weights<'a>,
     network: Network,
-    normalisation: Vec<(f64, f64)>,
+    normalisation: Vec<(f32, f32)>,
 }
 
 /// The policy's features are not functions of the state that properties speak of.
@@ -74,10 +74,7 @@ impl<'a> Subject<'a> {
         let layers = layers.collect();
         let network =
             Network::new(weights.features().count(), layers).map_err(|_| UnsupportedFeatures)?;
-        let normalisation = weights
-            .normalisation()
-            .map(|(c, s)| (f64::from(c), f64::from(s)))
-            .collect();
+        let normalisation = weights.normalisation().collect();
         Ok(Self {
             weights,
             network,

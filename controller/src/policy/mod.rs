@@ -22,6 +22,13 @@ use crate::policy::features::MAX_FEATURES;
 /// Largest acceleration and braking (m/s²) that a policy proposes.
 pub const MAX_ACCELERATION: f32 = 3.0;
 
+/// The acceleration (m/s²) that a network's output stands for.
+#[must_use]
+#[inline]
+pub fn acceleration(output: f32) -> f32 {
+    MAX_ACCELERATION * libm::tanhf(output)
+}
+
 /// A network that drives. Copying it copies no weights.
 #[derive(Clone, Copy, Debug)]
 pub struct Policy<'a> {
@@ -54,7 +61,7 @@ impl<'a> Policy<'a> {
         let inputs = self.inputs(pair);
         let inputs = inputs.get(..self.weights.features().count()).unwrap_or(&[]);
         let [first, second, ..] = self.weights.network().forward(inputs);
-        let [first, second] = [first, second].map(|mean| MAX_ACCELERATION * libm::tanhf(mean));
+        let [first, second] = [first, second].map(acceleration);
         if self.swaps(pair) {
             [second, first]
         } else {

@@ -5,6 +5,7 @@
 //! acceleration of a fixed grid is taken; otherwise the next command of the plan that was verified last;
 //! and if there is none, the ego brakes and says so. `docs/theorem.md` has the theorem.
 
+pub mod choice;
 mod contract;
 mod hazard;
 pub mod margin;
@@ -25,14 +26,12 @@ use rules::{Rules, Sound};
 use crate::decision::{Action, Cause, Decision, Intervention, Reason};
 use crate::junction::scene::Scene;
 use crate::observation::{Fault, Observation};
+use choice::{allowed, nearest};
 use core::marker::PhantomData;
 use hazard::{Hazards, Passage};
 use memory::Memory;
 use precedence::{Claims, Precedences};
 use verified::{Verified, best, passage_margin};
-
-/// Accelerations of the grid, from full braking to full acceleration.
-const GRID: u8 = 13;
 
 /// An ego without a safe plan that is less than this (m) in a zone had better stay there.
 const NOSE: f32 = 0.5;
@@ -123,7 +122,7 @@ impl<const N: usize, R: Rules> Shield<N, R> {
         let mut hazards = Hazards::new();
         hazards.add::<N, R>(&self.contract, scene, &seen, Claims::default());
         let speed = seen.ego.speed;
-        let acceleration = self.allowed(speed, acceleration);
+        let acceleration = allowed(&self.contract.ego, speed, acceleration);
         let verdict = check::<R>(&self.contract, &hazards, speed, [previous; 2], acceleration);
         Ok(verdict.margin)
     }
@@ -152,11 +151,12 @@ impl<const N: usize, R: Rules> Shield<N, R> {
         let mut hazards = Hazards::new();
         hazards.add::<N, R>(&self.contract, scene, seen, claims);
         let speed = seen.ego.speed;
-        let wanted = self.allowed(speed, proposal);
+        let wanted = allowed(&self.contract.ego, speed, proposal);
         let in_effect = self.memory.in_effect(&self.contract);
         let check = |a| check::<R>(&self.contract, &hazards, speed, in_effect, a);
         let verdict = check(wanted);
-        let nearest = || self.nearest(speed, wanted, check);
+        let accepted = |a| Some(check(a)).filter(|verdict| verdict.margin >= 0.0);
+        let nearest = || nearest(&self.contract.ego, speed, wanted, accepted);
         let found = if verdict.margin >= 0.0 {
             Some((wanted, verdict))
         } else {
@@ -184,7 +184,7 @@ impl<const N: usize, R: Rules> Shield<N, R> {
                 acceleration
             }
             None if self.memory.plan.is_none() && leaves(&hazards) => {
-                self.allowed(speed, self.contract.ego.go)
+                allowed(&self.contract.ego, speed, self.contract.ego.go)
             }
             None => self.carry_on(),
         };
@@ -205,51 +205,6 @@ impl<const N: usize, R: Rules> Shield<N, R> {
         };
         self.memory.plan = Some(R::tail(plan));
         if plan.go > 0 { ego.go } else { -ego.braking }
-    }
-
-    /// The acceleration of the grid that is nearest to `wanted` among those that are safe; of two, the lower.
-    fn nearest(
-        &self,
-        speed: f32,
-        wanted: f32,
-        check: impl Fn(f32) -> Verified,
-    ) -> Option<(f32, Verified)> {
-        let mut found: Option<(f32, Verified)> = None;
-        for i in 0..GRID {
-            let candidate = self.allowed(speed, self.grid(i));
-            let nearer = |(best, _): (f32, _)| (candidate - wanted).abs() < (best - wanted).abs();
-            if found.is_none_or(nearer) {
-                let verdict = check(candidate);
-                if verdict.margin >= 0.0 {
-                    found = Some((candidate, verdict));
-                }
-            }
-        }
-        found
-    }
-
-    /// Number `i` of the grid's accelerations in m/s².
-    fn grid(&self, i: u8) -> f32 {
-        let ego = self.contract.ego;
-        let share = f32::from(i) / f32::from(GRID - 1);
-        share * ego.acceleration - (1.0 - share) * ego.braking
-    }
-
-    /// What may be commanded of `acceleration` (m/s²) at `speed` (m/s); braking, if it is not a number.
-    fn allowed(&self, speed: f32, acceleration: f32) -> f32 {
-        let ego = self.contract.ego;
-        let most = if speed < ego.max_speed {
-            ego.acceleration
-        } else {
-            0.0
-        };
-        if acceleration >= most {
-            most
-        } else if acceleration >= -ego.braking {
-            acceleration
-        } else {
-            -ego.braking
-        }
     }
 
     /// Why `command` is refused: what stands in the way of the plan that goes farthest.

@@ -1,7 +1,7 @@
 //! Who goes first where two vehicles wait for each other.
 //!
 //! Who arrived first; and if that one does not take its turn, the other, and so on, as long as both rest.
-//! `docs/shield.md` shows why never both have precedence.
+//! `docs/theorem.md` shows why never both have precedence.
 
 use super::contract::{Contract, Precedence};
 use super::rules::Rules;

@@ -1,6 +1,8 @@
 //! A network's inputs: the controller's features, normalised with constants that travel with the weights.
 
+#[cfg(doc)]
 use cede_controller::policy::features::LIMIT;
+use cede_controller::policy::features::normalised;
 use cede_controller::{FeatureSet, Pair};
 use serde::{Deserialize, Serialize};
 
@@ -58,16 +60,8 @@ impl Inputs {
     pub fn append(&self, pair: &Pair, rows: &mut Vec<f32>) {
         let features = self.features.of(pair);
         let constants = self.centres.iter().zip(&self.scales);
-        rows.extend(features.iter().zip(constants).map(|(x, (c, s))| {
-            let x = (x - c) * s;
-            if x > LIMIT {
-                LIMIT
-            } else if x >= -LIMIT {
-                x
-            } else {
-                -LIMIT
-            }
-        }));
+        let inputs = features.iter().zip(constants);
+        rows.extend(inputs.map(|(&feature, (&centre, &scale))| normalised(feature, centre, scale)));
     }
 }
 

@@ -4,6 +4,7 @@
 //! network's inputs and [`slopes`] carries derivatives back; [`policy_view`] turns outputs into
 //! accelerations; [`episodes`] and [`judge`] drive whole encounters.
 
+pub mod dual;
 pub mod episodes;
 pub mod inputs;
 pub mod judge;

@@ -2,7 +2,7 @@
 
 use crate::driving::inputs::Inputs;
 use crate::nn::network::{Network, Tape};
-use cede_controller::policy::MAX_ACCELERATION;
+use cede_controller::policy::acceleration;
 use cede_controller::policy::weights::Draft;
 use cede_controller::{Pair, Perspective, WeightsError};
 
@@ -35,9 +35,9 @@ impl PolicyView<'_> {
         } else {
             (width, 1)
         };
-        let squash = |mean: f32| MAX_ACCELERATION * libm::tanhf(mean);
         let rows = output.chunks_exact(row);
-        rows.map(|o| [squash(o[0]), squash(o[second])]).collect()
+        rows.map(|o| [acceleration(o[0]), acceleration(o[second])])
+            .collect()
     }
 
     /// The words of the weights file (`.cede`) that `cede_controller` runs.

@@ -1,121 +1,58 @@
 //! Derivatives of the controller's features: what carries a gradient through the closed loop.
 //!
-//! `cede_controller` computes the features themselves; here is how each answers
-//! to the four numbers that an action moves. Where a feature is limited, its
-//! derivative is zero, as is that of everything that depends on the route alone.
+//! The features are the controller's own, computed on [`Dual`] numbers. Here is how what they are
+//! made of answers to the four numbers that an action moves. What depends on the route alone is constant.
 
-use cede_controller::policy::features::{CREEP, HORIZON, MAX_FEATURES};
-use cede_controller::policy::svo::MIN_DISTANCE;
-use cede_controller::{Crosser, Leader, VehicleState};
-use cede_controller::{FeatureSet, Pair};
+use crate::driving::dual::{Dual, VARIABLES};
+use cede_controller::policy::features::MAX_FEATURES;
+use cede_controller::{Crosser, FeatureSet, Leader, Pair, Point, Pose, Real, VehicleState};
 
 /// Derivatives of one feature with respect to the ego's distance (m) and speed (m/s), then the other's.
-pub type Slope = [f32; 4];
-
-/// Below this, (v·d̂)² + (v̂·d)² in m⁴/s² makes the SVO so steep that it would drown every other gradient.
-const STEEPEST_SVO: f32 = 1.0;
-
-/// Braking of the stopping distance in the `Route` features (m/s²).
-const BRAKING: f32 = 3.0;
+pub type Slope = [f32; VARIABLES];
 
 /// The derivatives of `set`'s features at `pair`, in the features' order; the places after the last are zero.
 #[must_use]
 pub fn slopes(set: FeatureSet, pair: &Pair) -> [Slope; MAX_FEATURES] {
-    let mut slopes = [[0.0; 4]; MAX_FEATURES];
-    match set {
-        FeatureSet::Raw => raw(pair, &mut slopes),
-        FeatureSet::Route => route(pair, &mut slopes),
-        FeatureSet::Traffic => {
-            route(pair, &mut slopes);
-            leader(&pair.ego, 14, 0, &mut slopes);
-            leader(&pair.other, 16, 2, &mut slopes);
-        }
-        FeatureSet::Scene => {
-            route(pair, &mut slopes);
-            leader(&pair.ego, 14, 0, &mut slopes);
-            crosser(&pair.ego, 16, &mut slopes);
-        }
-    }
-    slopes
+    let pair = Pair {
+        ego: moving(&pair.ego, 0),
+        other: moving(&pair.other, 2),
+        kind: pair.kind,
+        right_of_way: pair.right_of_way,
+        part: pair.part,
+        last_svo: Dual::of(pair.last_svo),
+    };
+    set.of(&pair).map(|feature| feature.slopes)
 }
 
-fn raw(pair: &Pair, slopes: &mut [Slope; MAX_FEATURES]) {
-    for (i, vehicle_state) in [&pair.ego, &pair.other].into_iter().enumerate() {
+/// A vehicle whose distance is variable `distance` and whose speed is the next one.
+fn moving(vehicle: &VehicleState, distance: usize) -> VehicleState<Dual> {
+    let along = |value: f32, slope: f32| Dual::variable(value, distance, slope);
+    let Pose {
+        position,
+        direction,
+    } = vehicle.pose;
+    VehicleState {
         // Going forward shortens the distance; the heading is constant along a polyline's side.
-        slopes[4 * i][2 * i] = -vehicle_state.pose.direction.x;
-        slopes[4 * i + 1][2 * i] = -vehicle_state.pose.direction.y;
-        slopes[4 * i + 2][2 * i + 1] = 1.0;
-    }
-}
-
-fn route(pair: &Pair, slopes: &mut [Slope; MAX_FEATURES]) {
-    for (i, vehicle_state) in [&pair.ego, &pair.other].into_iter().enumerate() {
-        let (distance, speed) = (2 * i, 2 * i + 1);
-        slopes[2 * i][distance] = 1.0;
-        slopes[2 * i + 1][speed] = 1.0;
-        let [by_distance, by_speed] = arrival(vehicle_state);
-        slopes[4 + i][distance] = by_distance;
-        slopes[4 + i][speed] = by_speed;
-        slopes[7 + i][distance] = 1.0;
-        slopes[7 + i][speed] = -vehicle_state.speed / BRAKING;
-    }
-    slopes[6] = svo(pair);
-}
-
-fn arrival(vehicle_state: &VehicleState) -> [f32; 2] {
-    let speed = vehicle_state.speed.max(CREEP);
-    if (vehicle_state.distance / speed).abs() > HORIZON {
-        return [0.0; 2];
-    }
-    let by_speed = if vehicle_state.speed > CREEP {
-        -vehicle_state.distance / (speed * speed)
-    } else {
-        0.0
-    };
-    [1.0 / speed, by_speed]
-}
-
-/// φ = atan2(v̂·d, v·d̂) with floored distances.
-fn svo(pair: &Pair) -> Slope {
-    let (a, b) = (&pair.ego, &pair.other);
-    let (d, other_d) = (a.distance.max(MIN_DISTANCE), b.distance.max(MIN_DISTANCE));
-    let (y, x) = (b.speed * d, a.speed * other_d);
-    let scale = 1.0 / (x * x + y * y).max(STEEPEST_SVO);
-    let floored = |vehicle_state: &VehicleState, slope: f32| {
-        if vehicle_state.distance > MIN_DISTANCE {
-            slope
-        } else {
-            0.0
-        }
-    };
-    [
-        floored(a, scale * x * b.speed),
-        -scale * y * other_d,
-        floored(b, -scale * y * a.speed),
-        scale * x * d,
-    ]
-}
-
-/// Gap and speed of `vehicle_state`'s leader at feature `place`; `vehicle_state`'s own distance is variable `by`.
-fn leader(
-    vehicle_state: &VehicleState,
-    place: usize,
-    by: usize,
-    slopes: &mut [Slope; MAX_FEATURES],
-) {
-    match vehicle_state.leader {
-        Some(Leader { gap, .. }) if gap.abs() <= HORIZON => slopes[place][by] = 1.0,
-        Some(_) => {}
-        // A leader that is not there is as fast as its follower.
-        None => slopes[place + 1][by + 1] = 1.0,
-    }
-}
-
-fn crosser(vehicle_state: &VehicleState, place: usize, slopes: &mut [Slope; MAX_FEATURES]) {
-    if let Some(Crosser { distance, .. }) = vehicle_state.crosser
-        && distance.abs() <= HORIZON
-    {
-        slopes[place][0] = 1.0;
+        pose: Pose {
+            position: Point::new(
+                along(position.x, -direction.x),
+                along(position.y, -direction.y),
+            ),
+            direction,
+        },
+        exit: vehicle.exit,
+        speed: Dual::variable(vehicle.speed, distance + 1, 1.0),
+        distance: along(vehicle.distance, 1.0),
+        footprint: vehicle.footprint,
+        leader: vehicle.leader.map(|leader| Leader {
+            gap: along(leader.gap, 1.0),
+            speed: Dual::of(leader.speed),
+        }),
+        crosser: vehicle.crosser.map(|crosser| Crosser {
+            distance: along(crosser.distance, 1.0),
+            its_distance: Dual::of(crosser.its_distance),
+            its_speed: Dual::of(crosser.its_speed),
+        }),
     }
 }
 

@@ -6,7 +6,7 @@
 //! too coarse, it halves the box itself, a few times at most.
 
 use super::Subject;
-use super::interval::{Interval, STATE};
+use super::enclosure::{Interval, STATE};
 use cede_formats::property::Setting;
 use cede_nnv_check::check::{CheckError, neuron_bounds};
 use cede_nnv_check::proof::{Proof, Split};

@@ -1,6 +1,6 @@
 //! Bounds of the derivatives of the network's mean by the state.
 
-use super::interval::{Interval, STATE};
+use super::enclosure::{Interval, STATE};
 use cede_nnv_check::{Activation, Network};
 
 /// The range of the (generalised) gradient of output 0 by the state, from the bounds of all

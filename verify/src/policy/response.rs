@@ -1,8 +1,8 @@
 //! How a policy answers a whole box of states: the range of its acceleration and of its slopes.
 
 use super::Subject;
+use super::enclosure::{Interval, STATE};
 use super::gradient::gradient;
-use super::interval::{Interval, STATE};
 use super::search::{MOST, TANH, single_precision_margin};
 use cede_formats::property::Setting;
 use cede_nnv::Bounder;

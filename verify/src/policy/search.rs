@@ -2,8 +2,8 @@
 
 use super::Subject;
 use super::check::slopes_hold;
+use super::enclosure::Interval;
 use super::gradient::gradient;
-use super::interval::Interval;
 use cede_controller::Policy;
 use cede_formats::property::{Claim, Place, Setting, StateProperty, Variable};
 use cede_nnv::{Bounder, Worker};

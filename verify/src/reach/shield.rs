@@ -6,6 +6,7 @@
 use super::states::States;
 use crate::interval::Interval;
 use cede_controller::Real;
+use cede_controller::shield::choice::{GRID, grid};
 use cede_controller::shield::reach::Reach;
 use cede_controller::shield::{Contract, margin};
 
@@ -32,9 +33,6 @@ pub(super) const STOPPING: f64 = 1e-4;
 const CLEARING: f64 = 4e-3;
 /// What it may do to a difference of arc lengths (m), with room to spare.
 const PLACE: f64 = 1e-3;
-/// Accelerations of the shield's grid.
-const GRID: u8 = 13;
-
 /// The shield of a crossing with one other.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shield {
@@ -79,9 +77,8 @@ impl Shield {
             };
         }
         let command = |i: u8| {
-            let share = f64::from(i) / f64::from(GRID - 1);
-            // The controller's own is an f32.
-            let a = Interval::point(share * most - (1.0 - share) * braking).wider(1e-6);
+            // The controller's own is rounded to `f32`.
+            let a = grid::<Interval>(&ego, i).wider(1e-6);
             (a, self.margins(states, previous, a))
         };
         let grid: Vec<(Interval, Margins)> = (0..GRID).map(command).collect();

@@ -24,7 +24,7 @@ const PLACE: f64 = 1e-4;
 /// rounding. Zones are larger than they need be by ten times that.
 const EDGE: f64 = 2e-3;
 /// What is proposed when there is nobody left to meet, m/s².
-const FREE: f64 = 1.0;
+const FREE: f64 = cede_controller::FREE as f64;
 /// Largest proposal of any policy, m/s².
 const MOST: f64 = cede_controller::policy::MAX_ACCELERATION as f64;
 

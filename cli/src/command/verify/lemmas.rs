@@ -12,7 +12,7 @@ use std::time::Duration;
 
 /// What `cede help verify lemmas` says beside the options.
 const HELP: &str = "\
-Z3 proves the steps of the shield's theorem (docs/shield.md), over the reals, from the margins that the vehicle
+Z3 proves the steps of the shield's theorem (docs/theorem.md), over the reals, from the margins that the vehicle
 executes, and refutes each of them with a rule broken. Exit code 1 if a lemma is refuted or left open, or holds in
 spite of a broken rule.";
 
