@@ -135,10 +135,10 @@ impl Contender {
         Ok(match (self, contract) {
             (Self::Baseline(baseline), None) => baseline.fit(training)?,
             (Self::Baseline(baseline), Some(contract)) => {
-                Box::new(Shielded::new(baseline.fit(training)?, contract)?)
+                Box::new(Shielded::new(baseline.fit(training)?, contract))
             }
             (Self::Cede(policy), None) => Box::new(PolicyAlone::new(*policy)),
-            (Self::Cede(policy), Some(contract)) => Box::new(Cede::new(*policy, contract)?),
+            (Self::Cede(policy), Some(contract)) => Box::new(Cede::new(*policy, contract)),
         })
     }
 }

@@ -102,12 +102,11 @@ fn decisions(c: &mut Criterion) {
             i = (i + 1) % seen.len();
             black_box(&seen[i])
         };
-        let mut shield = Shield::<8>::new(Contract::WORST_CASE).expect("a contract");
+        let mut shield = Shield::<8>::new(Contract::WORST_CASE);
         c.bench_function(&format!("shield/{others}"), |b| {
             b.iter(|| shield.filter(&scene, next(), black_box(1.0)));
         });
-        let mut controller =
-            Controller::new(policy, Contract::WORST_CASE, Part::Left).expect("a contract");
+        let mut controller = Controller::new(policy, Contract::WORST_CASE, Part::Left);
         c.bench_function(&format!("decide/{others}"), |b| {
             b.iter(|| controller.decide(&scene, next()));
         });
@@ -121,8 +120,7 @@ fn worst(_: &mut Criterion) {
     for others in CROWDS {
         let scene = scene(others);
         let mut numbers = Numbers(2);
-        let mut controller =
-            Controller::new(policy, Contract::WORST_CASE, Part::Left).expect("a contract");
+        let mut controller = Controller::new(policy, Contract::WORST_CASE, Part::Left);
         let mut times: Vec<Duration> = (0..1_000_000)
             .map(|_| {
                 let seen = numbers.observation(others);

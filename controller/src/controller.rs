@@ -8,7 +8,7 @@ use crate::observation::{Fault, Observation, Vehicle};
 use crate::policy::Policy;
 use crate::policy::pair::{Pair, Part, VehicleState};
 use crate::policy::traffic::{NearbyVehicle, TrafficContext};
-use crate::shield::{Contract, ContractError, Shield};
+use crate::shield::{Contract, Shield};
 use core::f32::consts::FRAC_PI_4;
 
 /// Acceleration (m/s²) that is proposed when there is nobody left to meet.
@@ -28,7 +28,7 @@ pub const FREE: f32 = 1.0;
 /// /// At start-up, from weights in flash.
 /// fn controller(weights: &'static [u32]) -> Option<Controller<'static, 8>> {
 ///     let policy = Policy::new(weights).ok()?;
-///     Controller::new(policy, Contract::WORST_CASE, Part::Left).ok()
+///     Some(Controller::new(policy, Contract::WORST_CASE, Part::Left))
 /// }
 ///
 /// /// Every 100 ms: the acceleration to command, in m/s².
@@ -49,17 +49,15 @@ pub struct Controller<'w, const N: usize> {
 
 impl<'w, const N: usize> Controller<'w, N> {
     /// A controller that has seen nothing yet; `part` is the one that a joint policy gives it.
-    ///
-    /// # Errors
-    /// The first number of `contract` that is out of its range.
-    pub fn new(policy: Policy<'w>, contract: Contract, part: Part) -> Result<Self, ContractError> {
-        Ok(Self {
+    #[must_use]
+    pub fn new(policy: Policy<'w>, contract: Contract, part: Part) -> Self {
+        Self {
             policy,
-            shield: Shield::new(contract)?,
+            shield: Shield::new(contract),
             part,
             orientations: [FRAC_PI_4; N],
             around: TrafficContext::default(),
-        })
+        }
     }
 
     /// The shield.
@@ -243,7 +241,7 @@ mod tests {
         let file = file(FeatureSet::Route, Perspective::Ego, 16);
         let policy = Policy::new(&file).unwrap();
         let decide = |others| {
-            let mut controller = Controller::new(policy, Contract::WORST_CASE, Part::Left).unwrap();
+            let mut controller = Controller::new(policy, Contract::WORST_CASE, Part::Left);
             controller.propose(
                 &scene(),
                 &Observation {
@@ -282,7 +280,7 @@ mod tests {
     fn with_nobody_to_meet_the_ego_drives_on_and_with_bad_senses_it_brakes() {
         let file = file(FeatureSet::Route, Perspective::Ego, 16);
         let policy = Policy::new(&file).unwrap();
-        let mut controller = Controller::new(policy, Contract::WORST_CASE, Part::Left).unwrap();
+        let mut controller = Controller::new(policy, Contract::WORST_CASE, Part::Left);
         let alone = Observation {
             ego: vehicle(0.0, 5.0),
             others: [None; 3],

@@ -8,6 +8,9 @@ use core::fmt;
 /// Displays as one line for a log, as in
 /// `shielded: other 2 may arrive in 1.3 s, clearing needs 1.9 s`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Decision {
     /// The acceleration in m/s²; always finite, and within [−braking, acceleration] of the contract's ego.
     pub acceleration: f32,
@@ -16,7 +19,7 @@ pub struct Decision {
     /// Metres to spare of the best plan that follows; negative if no plan is safe. Not a number is
     /// never; without an observation that can be trusted it is 0.
     pub margin: f32,
-    /// Somebody did what the contract excludes, since the last decision.
+    /// A motion since the last decision that exceeds the contract's bounds.
     pub breach: Option<Breach>,
     /// What the policy thinks of the other that restricts the ego most, if it was asked.
     pub prediction: Option<Prediction>,
@@ -24,6 +27,9 @@ pub struct Decision {
 
 /// What the policy thinks of one other.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Prediction {
     /// Number of the other.
     pub other: u8,
@@ -35,17 +41,26 @@ pub struct Prediction {
 
 /// Who decided.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum Cause {
     /// The policy: its proposal is safe.
     Policy,
     /// The shield: the proposal is not.
     Shielded(Intervention),
-    /// Nobody could: the ego carries on with the plan that was verified last, or brakes.
+    /// Neither of them: the inputs cannot be trusted, or no plan is safe. The ego carries on with the plan that was
+    /// verified last. Without one it brakes; if it stands in crossing zones whose others are all outside, it
+    /// accelerates to leave them. If only the proposal is at fault, a plan that is verified afresh comes before
+    /// all of these.
     Fallback(Fault),
 }
 
 /// What the shield did instead, and why.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Intervention {
     /// What it did.
     pub action: Action,
@@ -55,6 +70,9 @@ pub struct Intervention {
 
 /// What the shield does instead of what was proposed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum Action {
     /// The nearest acceleration that is safe.
     Nearest,
@@ -64,6 +82,9 @@ pub enum Action {
 
 /// Why a proposal is refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum Reason {
     /// The ego could not clear the zone before the other's earliest arrival.
     Arrival {
@@ -94,12 +115,15 @@ pub enum Reason {
     },
 }
 
-/// Who broke the contract.
+/// Whose motion exceeds the contract's bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum Breach {
-    /// The ego did not do as it was told.
+    /// The ego deviated from the command.
     Ego,
-    /// This other moved in a way in which it could not.
+    /// This other exceeds the contract's motion bounds.
     Other(u8),
 }
 
@@ -108,8 +132,10 @@ impl fmt::Display for Decision {
         self.cause.fmt(f)?;
         match self.breach {
             None => Ok(()),
-            Some(Breach::Ego) => f.write_str("; the ego did not do as it was told"),
-            Some(Breach::Other(other)) => write!(f, "; other {other} broke the contract"),
+            Some(Breach::Ego) => f.write_str("; the ego deviated from the command"),
+            Some(Breach::Other(other)) => {
+                write!(f, "; other {other} exceeds the contract's motion bounds")
+            }
         }
     }
 }
@@ -134,7 +160,6 @@ impl fmt::Display for Reason {
 
 impl Reason {
     /// The reason in words, with `other` for whom it is about: `the lorry may arrive in 1.3 s, …`.
-    ///
     pub fn naming<'n>(&self, other: &'n str) -> impl fmt::Display + use<'n> {
         Named(*self, other)
     }

@@ -13,7 +13,8 @@
 //! [`Controller::decide`] turns what is sensed into an acceleration, and says why. What must hold for its
 //! guarantee is in the [`Contract`]: put your vehicle's numbers there.
 //!
-//! ```
+#![cfg_attr(feature = "embedded-policy", doc = "```")]
+#![cfg_attr(not(feature = "embedded-policy"), doc = "```ignore")]
 //! use cede_controller::{
 //!     Cause, Contract, Controller, Footprint, Observation, Part, Path, Point, Policy, Route, Scene, Vehicle,
 //! };
@@ -28,9 +29,8 @@
 //!
 //! // The policy that ships, or `include_weights!("own.cede")`; and this vehicle's brakes.
 //! let policy = Policy::new(cede_controller::policy::embedded::words())?;
-//! let mut contract = Contract::WORST_CASE;
-//! contract.ego.braking = 4.0;
-//! let mut controller = Controller::<8>::new(policy, contract, Part::Left)?;
+//! let contract = Contract::builder().ego_braking(4.0).build()?;
+//! let mut controller = Controller::<8>::new(policy, contract, Part::Left);
 //!
 //! // Every 100 ms, from localisation and tracking: arc length and speed along the route, and the pose.
 //! let sensed = |route: &Route<8>, s: f32, speed: f32| Vehicle { s, speed, pose: route.pose(s) };
@@ -44,42 +44,56 @@
 //! match decision.cause {
 //!     Cause::Policy => {}
 //!     // The decision displays as a line for the log: "shielded: other 0 may arrive in 1.3 s, …".
-//!     Cause::Shielded(_) | Cause::Fallback(_) => { /* log(format_args!("{decision}")) */ }
+//!     _ => { /* log(format_args!("{decision}")) */ }
 //! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # Modules
+//! # Where things are
+//!
+//! What drives is here at the root. The modules hold the formulas and constants that others build on:
 //!
 //! | | |
 //! |---|---|
-//! | [`route`], [`scene`], [`zone`] | where vehicles go, and where they can touch |
-//! | [`observation`], [`decision`] | what goes in, what comes out, what can be wrong |
-//! | [`pair`], [`features`], [`svo`], [`mlp`], [`weights`], [`policy`], [`embedded`] | from two vehicles to a proposal |
-//! | [`shield`] | from a proposal to what is safe |
-//! | [`controller`] | all of it together |
+//! | [`junction`] | where two routes can touch |
+//! | [`policy`] | features, SVO, network, weights file, the policy that ships |
+//! | [`shield`] | margins and reach, as proved |
+//! | [`kinematics`], [`separation`] | one step of motion, and whether two footprints touch |
+//! | [`dangerous`] | for proofs, and for tests that plant errors |
+//!
+//! # Features
+//!
+//! They only add.
+//!
+//! | | |
+//! |---|---|
+//! | `embedded-policy` (default) | the policy that ships, `policy::embedded`: 39 KiB |
+//! | `serde` | contracts and decisions as serde data; a contract that is read is validated |
+//! | `defmt` | contracts and decisions in a `defmt` log |
 #![no_std]
 #![forbid(unsafe_code)]
 
 #[cfg(test)]
 extern crate std;
 
-pub mod controller;
-pub mod decision;
-pub mod geometry;
+mod controller;
+pub mod dangerous;
+mod decision;
+mod geometry;
 pub mod junction;
 pub mod kinematics;
-pub mod observation;
+mod observation;
 pub mod policy;
-pub mod real;
+mod real;
 pub mod separation;
 pub mod shield;
 
-pub use controller::Controller;
+pub use controller::{Controller, FREE};
 pub use decision::{Action, Breach, Cause, Decision, Intervention, Prediction, Reason};
 pub use geometry::{Footprint, Point, Pose};
 pub use junction::{
-    ConflictKind, Path, Route, RouteConflict, RouteError, Scene, SceneError, Span, Zone,
+    CONFLICT_RADIUS, ConflictKind, MAX_OTHERS, Path, Route, RouteConflict, RouteError, Scene,
+    SceneError, Span, Zone,
 };
 pub use observation::{Fault, Observation, Vehicle};
 pub use policy::{
@@ -88,4 +102,6 @@ pub use policy::{
 };
 pub use real::{Elementary, Real};
 pub use separation::OrientedBox;
-pub use shield::{Contract, ContractError, Plan, Shield};
+pub use shield::{
+    Contract, ContractBuilder, ContractError, Ego, Follower, Other, Plan, Precedence, Shield,
+};

@@ -50,6 +50,9 @@ pub struct Observation<const N: usize> {
 
 /// Why the controller cannot trust its inputs, or has nothing safe to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum Fault {
     /// The ego's own state is not a number or out of range.
     Ego,

@@ -33,7 +33,7 @@ pub fn features_named(name: &str) -> Option<FeatureSet> {
 
 /// Keys and values of a policy's metadata, in a fixed order.
 pub(crate) fn of(weights: &Weights<'_>) -> [(&'static str, String); 4] {
-    let labels: Vec<_> = weights.features.labels().collect();
+    let labels: Vec<_> = weights.features().labels().collect();
     let provenance = weights
         .provenance()
         .iter()
@@ -43,11 +43,11 @@ pub(crate) fn of(weights: &Weights<'_>) -> [(&'static str, String); 4] {
             text
         });
     [
-        (FEATURES, weights.features.name().to_owned()),
+        (FEATURES, weights.features().name().to_owned()),
         ("cede.feature_names", labels.join(",")),
         (
             PERSPECTIVE,
-            perspective_name(weights.perspective).to_owned(),
+            perspective_name(weights.perspective()).to_owned(),
         ),
         ("cede.provenance_sha256", provenance),
     ]

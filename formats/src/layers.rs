@@ -56,7 +56,7 @@ impl Layer {
 
 /// The four layers of a policy, all outputs included.
 pub(crate) fn of(weights: &Weights<'_>) -> [Layer; 4] {
-    weights.network.layers().map(|layer| Layer {
+    weights.network().layers().map(|layer| Layer {
         weights: layer.weights().collect(),
         biases: layer.biases().collect(),
     })

@@ -82,7 +82,7 @@ mod tests {
         let (centres, scales): (Vec<f32>, Vec<f32>) = weights.normalisation().unzip();
         assert_eq!(numbers("normalisation.centre"), centres);
         assert_eq!(numbers("normalisation.scale"), scales);
-        for (i, layer) in weights.network.layers().into_iter().enumerate() {
+        for (i, layer) in weights.network().layers().into_iter().enumerate() {
             let biases: Vec<f32> = layer.biases().collect();
             assert_eq!(numbers(&format!("layers.{i}.bias")), biases);
             let rows = numbers(&format!("layers.{i}.weight"));
@@ -95,7 +95,7 @@ mod tests {
         let (_, header) = SafeTensors::read_metadata(&bytes).unwrap();
         let told = header.metadata().as_ref().unwrap()["cede"].clone();
         let told: serde_json::Value = serde_json::from_str(&told).unwrap();
-        assert_eq!(told["cede.features"], weights.features.name());
+        assert_eq!(told["cede.features"], weights.features().name());
         assert_eq!(told["cede.perspective"], "ego");
         assert_eq!(told["cede.provenance_sha256"].as_str().unwrap().len(), 64);
     }

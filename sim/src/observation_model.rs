@@ -1,12 +1,12 @@
 //! What the two judged vehicles of an encounter see, while its bystanders do what they did.
 
 use crate::driver::scene;
-use cede_controller::junction::scene::RouteConflict;
+use cede_controller::RouteConflict;
 use cede_controller::kinematics::State;
-use cede_controller::policy::pair::{Part, RightOfWay, VehicleState};
 use cede_controller::{
     ConflictKind, Footprint, NearbyVehicle, Pair, Path, Point, Scene, TrafficContext,
 };
+use cede_controller::{Part, RightOfWay, VehicleState};
 use cede_data::encounter::Encounter;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 

@@ -42,15 +42,10 @@ impl Transparency {
 /// that was recorded (limited to what the contract's ego can do), while the one before it is still in
 /// effect. Nothing is remembered from step to step and no precedence is assumed, so every step is
 /// judged against the worst case. Footprints are [`Footprint::PAPER`]'s.
-///
-/// # Errors
-/// If a number of `contract` is out of its range.
-pub fn transparency(
-    encounters: &[&Encounter],
-    contract: Contract,
-) -> Result<Vec<Transparency>, ContractError> {
-    let mut tables = tables(encounters, &[contract])?;
-    Ok(tables.pop().unwrap_or_default())
+#[must_use]
+pub fn transparency(encounters: &[&Encounter], contract: Contract) -> Vec<Transparency> {
+    let mut tables = tables(encounters, &[contract]);
+    tables.pop().unwrap_or_default()
 }
 
 /// What is accepted under one contract of a sweep.
@@ -68,22 +63,21 @@ pub struct Swept {
 /// (0.5 … 4 m/s²) and the ego's braking (3 … 8 m/s²).
 ///
 /// # Errors
-/// If a number of `contract` is out of its range.
+/// If `contract` does not allow for one of them.
 pub fn sweep(encounters: &[&Encounter], contract: Contract) -> Result<Vec<Swept>, ContractError> {
     let grid = (1..=8_u8).flat_map(|half| (3..=8_u8).map(move |braking| (half, braking)));
     let contracts: Vec<Contract> = grid
         .map(|(half, braking)| {
-            let mut contract = contract;
-            contract.other.acceleration = 0.5 * f32::from(half);
-            contract.ego.braking = f32::from(braking);
-            contract
+            let numbers = contract.to_builder();
+            let numbers = numbers.other_acceleration(0.5 * f32::from(half));
+            numbers.ego_braking(f32::from(braking)).build()
         })
-        .collect();
-    let tables = tables(encounters, &contracts)?;
+        .collect::<Result<_, _>>()?;
+    let tables = tables(encounters, &contracts);
     let rows = contracts.iter().zip(tables).flat_map(|(contract, table)| {
         table.into_iter().map(|counted| Swept {
-            acceleration: contract.other.acceleration,
-            braking: contract.ego.braking,
+            acceleration: contract.other().acceleration,
+            braking: contract.ego().braking,
             counted,
         })
     });
@@ -91,21 +85,18 @@ pub fn sweep(encounters: &[&Encounter], contract: Contract) -> Result<Vec<Swept>
 }
 
 /// A table for each of `contracts`, without rows for what does not occur.
-fn tables(
-    encounters: &[&Encounter],
-    contracts: &[Contract],
-) -> Result<Vec<Vec<Transparency>>, ContractError> {
+fn tables(encounters: &[&Encounter], contracts: &[Contract]) -> Vec<Vec<Transparency>> {
     let shields: Vec<Shield<1>> = contracts
         .iter()
         .map(|&contract| Shield::new(contract))
-        .collect::<Result<_, _>>()?;
+        .collect();
     let counted: Vec<Vec<Transparency>> = encounters
         .par_iter()
         .flat_map_iter(|encounter| Role::BOTH.map(|role| count(&shields, encounter, role)))
         .collect();
-    Ok((0..contracts.len())
+    (0..contracts.len())
         .map(|i| table(&counted.iter().filter_map(|counts| counts.get(i))))
-        .collect())
+        .collect()
 }
 
 fn table<'c>(counted: &(impl Iterator<Item = &'c Transparency> + Clone)) -> Vec<Transparency> {

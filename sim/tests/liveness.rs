@@ -18,7 +18,7 @@ fn delay(encounter: &Encounter, ego: usize) -> Option<u32> {
     );
     let scene = scene(encounter, ego)?;
     let zones: Vec<_> = scene.conflicts()[0].zones().copied().collect();
-    let mut shield = Shield::<1>::new(Contract::WORST_CASE).unwrap();
+    let mut shield = Shield::<1>::new(Contract::WORST_CASE);
     let mut state = me.record.first().map(|r| State { s: r.s, v: r.v })?;
     let mut free = 0;
     for step in 0..10_000 {

@@ -1,9 +1,9 @@
 //! The shield in closed loop: it keeps vehicles apart, it lets them pass, and each of its rules is needed.
 //! rapier2d judges every step, those of the broken shields as well.
 
+use cede_controller::dangerous::{Rules, Sound, unchecked};
 use cede_controller::shield::margin::{self, Departure};
 use cede_controller::shield::reach::Reach;
-use cede_controller::shield::{Rules, Sound};
 use cede_controller::{Contract, Plan, Zone};
 use cede_sim::campaign::{Setup, Tally, campaign, unshielded};
 
@@ -151,7 +151,7 @@ mutant! { a_stale_plan_is_caught, StalePlan,
 }
 mutant! { a_dropped_latency_is_caught, NoLatency,
     fn departure(contract: &Contract, speed: f32, previous: [f32; 2], command: f32) -> Departure<f32> {
-        let prompt = Contract { latency: 0.0, ..*contract };
+        let prompt = unchecked(contract.to_builder().latency(0.0));
         margin::departure(&prompt, speed, previous, command)
     }
 }

@@ -67,12 +67,12 @@ fn policies() -> Vec<Vec<u32>> {
 
 /// The features that the policy is told, raw.
 fn features(weights: &Weights<'_>, pair: &Pair) -> Vec<f32> {
-    weights.features.of(pair)[..weights.features.count()].to_vec()
+    weights.features().of(pair)[..weights.features().count()].to_vec()
 }
 
 fn assert_close(policy: &Policy<'_>, pair: &Pair, elsewhere: [f64; 2]) {
     for (here, there) in policy.act(pair).into_iter().zip(elsewhere) {
-        let features = policy.weights().features;
+        let features = policy.weights().features();
         let difference = (f64::from(here) - there).abs();
         assert!(difference < CLOSE, "{features:?}: {here} and {there}");
     }

@@ -20,7 +20,7 @@ fn changed(change: impl Fn(usize, &mut [f32], &mut [f32])) -> Vec<u32> {
     let weights = Weights::parse(embedded::words()).unwrap();
     let mut parameters = Vec::new();
     let mut width = 0;
-    for (number, layer) in weights.network.layers().iter().enumerate() {
+    for (number, layer) in weights.network().layers().iter().enumerate() {
         let mut biases: Vec<f32> = layer.biases().collect();
         let mut columns: Vec<f32> = layer.weights().collect();
         change(number, &mut biases, &mut columns);
@@ -30,8 +30,8 @@ fn changed(change: impl Fn(usize, &mut [f32], &mut [f32])) -> Vec<u32> {
     }
     let (centres, scales): (Vec<f32>, Vec<f32>) = weights.normalisation().unzip();
     let draft = Draft {
-        features: weights.features,
-        perspective: weights.perspective,
+        features: weights.features(),
+        perspective: weights.perspective(),
         width,
         provenance: [0; 32],
         centres: &centres,

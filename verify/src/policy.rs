@@ -40,12 +40,13 @@ impl<'a> Subject<'a> {
     /// The policy of a weights file, in the part of the left-turner where it is a joint one.
     ///
     /// # Errors
-    /// If its features are the paper's raw ones.
+    /// If its features are not of the route, as the paper's raw ones are not.
     pub fn new(weights: Weights<'a>) -> Result<Self, UnsupportedFeatures> {
-        if weights.features == FeatureSet::Raw {
+        let (FeatureSet::Route | FeatureSet::Traffic | FeatureSet::Scene) = weights.features()
+        else {
             return Err(UnsupportedFeatures);
-        }
-        let dense = weights.network.layers();
+        };
+        let dense = weights.network().layers();
         let layers = dense.iter().enumerate().map(|(index, layer)| {
             let last = index + 1 == dense.len();
             let (biases, columns): (Vec<f32>, Vec<f32>) =
@@ -72,7 +73,7 @@ impl<'a> Subject<'a> {
         });
         let layers = layers.collect();
         let network =
-            Network::new(weights.features.count(), layers).map_err(|_| UnsupportedFeatures)?;
+            Network::new(weights.features().count(), layers).map_err(|_| UnsupportedFeatures)?;
         let normalisation = weights.normalisation().collect();
         Ok(Self {
             weights,
@@ -84,7 +85,7 @@ impl<'a> Subject<'a> {
     /// Whose commands the network gives.
     #[must_use]
     pub fn perspective(&self) -> Perspective {
-        self.weights.perspective
+        self.weights.perspective()
     }
 
     /// The linear functions and radii of the features on a box of states.
@@ -96,8 +97,13 @@ impl<'a> Subject<'a> {
     /// The enclosed features on a box of states.
     fn features(&self, region: &InputBox, setting: &Setting) -> Vec<Enclosed> {
         // The feature set was checked when the subject was made.
-        features::enclose(self.weights.features, &self.normalisation, region, setting)
-            .unwrap_or_default()
+        features::enclose(
+            self.weights.features(),
+            &self.normalisation,
+            region,
+            setting,
+        )
+        .unwrap_or_default()
     }
 }
 

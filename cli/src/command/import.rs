@@ -106,11 +106,11 @@ fn describe(policy: &Policy<'_>) {
     let weights = policy.weights();
     println!(
         "{} policy over the features `{}`, hidden layers {} wide",
-        perspective_name(weights.perspective),
-        weights.features.name(),
-        weights.network.width()
+        perspective_name(weights.perspective()),
+        weights.features().name(),
+        weights.network().width()
     );
-    for (label, (centre, scale)) in weights.features.labels().zip(weights.normalisation()) {
+    for (label, (centre, scale)) in weights.features().labels().zip(weights.normalisation()) {
         let reach = LIMIT / scale.abs();
         let (low, high) = (centre - reach, centre + reach);
         println!("  {label:<20} limited to {low:.1} … {high:.1}");

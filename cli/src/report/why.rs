@@ -18,6 +18,8 @@ pub(crate) enum Class {
     Stop,
     /// No command was safe.
     Fallback,
+    /// Something that has no class here.
+    Other,
 }
 
 impl Class {
@@ -31,7 +33,9 @@ impl Class {
                 Reason::Arrival { .. } => Self::Occupied,
                 Reason::Entry { .. } => Self::Entry,
                 Reason::Stop { .. } => Self::Stop,
+                _ => Self::Other,
             }),
+            _ => Some(Self::Other),
         }
     }
 }

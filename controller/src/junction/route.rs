@@ -16,6 +16,7 @@ pub struct Route<const P: usize> {
 
 /// Why a polyline is not a route.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum RouteError {
     /// Fewer than two points that are apart from each other.
     TooFewPoints,

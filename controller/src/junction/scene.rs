@@ -24,6 +24,7 @@ pub struct Path<'a, const P: usize> {
 
 /// Why a scene cannot be prepared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum SceneError {
     /// No other route, or more than the scene's capacity or [`MAX_OTHERS`].
     Others,

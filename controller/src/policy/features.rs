@@ -64,6 +64,9 @@ const SCENE_LABELS: [&str; 5] = [
 
 /// Which features a network is told; the order of the values is part of the weights file's format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum FeatureSet {
     /// The paper's eight: x, y (m, map frame), speed (m/s) and heading (rad) of the ego, then of the other.
     Raw,

@@ -1,11 +1,12 @@
 //! The policy: from a pair of vehicles to the ego's acceleration and the other's, as it expects it.
 
+#[cfg(feature = "embedded-policy")]
 pub mod embedded;
 pub mod features;
 pub mod mlp;
-pub mod pair;
+pub(crate) mod pair;
 pub mod svo;
-pub mod traffic;
+pub(crate) mod traffic;
 pub mod weights;
 
 pub use features::FeatureSet;
@@ -58,8 +59,8 @@ impl<'a> Policy<'a> {
     #[must_use]
     pub fn act(&self, pair: &Pair) -> [f32; 2] {
         let inputs = self.inputs(pair);
-        let inputs = inputs.get(..self.weights.features.count()).unwrap_or(&[]);
-        let [first, second, ..] = self.weights.network.forward(inputs);
+        let inputs = inputs.get(..self.weights.features().count()).unwrap_or(&[]);
+        let [first, second, ..] = self.weights.network().forward(inputs);
         let [first, second] = [first, second].map(acceleration);
         if self.swaps(pair) {
             [second, first]
@@ -77,9 +78,9 @@ impl<'a> Policy<'a> {
     #[inline(never)]
     pub fn inputs(&self, pair: &Pair) -> [f32; MAX_FEATURES] {
         let mut inputs = if self.swaps(pair) {
-            self.weights.features.of(&pair.swapped())
+            self.weights.features().of(&pair.swapped())
         } else {
-            self.weights.features.of(pair)
+            self.weights.features().of(pair)
         };
         for (input, (centre, scale)) in inputs.iter_mut().zip(self.weights.normalisation()) {
             *input = features::normalised(*input, centre, scale);
@@ -89,7 +90,7 @@ impl<'a> Policy<'a> {
 
     /// Whether the network sees the other first.
     fn swaps(&self, pair: &Pair) -> bool {
-        self.weights.perspective == Perspective::Joint && pair.part == Part::Other
+        self.weights.perspective() == Perspective::Joint && pair.part == Part::Other
     }
 }
 

@@ -16,7 +16,7 @@ const CAPACITY: usize = MAX_OTHERS * MAX_ZONES;
 ///
 /// All distances are metres from where the ego is, sensing errors included on the safe side.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hazard {
+pub(crate) struct Hazard {
     /// Number of the other.
     pub other: u8,
     /// Having gone so far, the ego has certainly cleared the zone, and sees it.
@@ -31,7 +31,7 @@ pub struct Hazard {
 
 /// When the ego may clear a hazard.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Passage {
+pub(crate) enum Passage {
     /// Before the other arrives at its zone.
     Before {
         /// Metres, at least, from the other to its zone; negative if it is in it.

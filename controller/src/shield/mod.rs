@@ -6,22 +6,22 @@
 //! and if there is none, the ego brakes and says so. `docs/theorem.md` has the theorem.
 
 pub mod choice;
-pub mod contract;
-pub mod hazard;
+mod contract;
+mod hazard;
 pub mod margin;
 mod memory;
 mod plan;
 mod precedence;
 pub mod reach;
-pub mod rules;
+pub(crate) mod rules;
 #[cfg(test)]
 mod tests;
 mod verified;
 mod waiting;
 
-pub use contract::{Contract, ContractError};
+pub use contract::{Contract, ContractBuilder, ContractError, Ego, Follower, Other, Precedence};
 pub use plan::Plan;
-pub use rules::{Rules, Sound};
+use rules::{Rules, Sound};
 
 use crate::decision::{Action, Cause, Decision, Intervention, Reason};
 use crate::junction::scene::Scene;
@@ -49,26 +49,22 @@ pub struct Shield<const N: usize, R: Rules = Sound> {
 
 impl<const N: usize> Shield<N> {
     /// A shield that has seen nothing yet.
-    ///
-    /// # Errors
-    /// The first number of `contract` that is out of its range.
-    pub fn new(contract: Contract) -> Result<Self, ContractError> {
+    #[must_use]
+    pub fn new(contract: Contract) -> Self {
         Self::with_rules(contract)
     }
 }
 
 impl<const N: usize, R: Rules> Shield<N, R> {
     /// A shield with rules of its own, which are not proved: see [`Rules`].
-    ///
-    /// # Errors
-    /// The first number of `contract` that is out of its range.
-    pub fn with_rules(contract: Contract) -> Result<Self, ContractError> {
-        Ok(Self {
-            contract: contract.checked()?,
+    #[must_use]
+    pub fn with_rules(contract: Contract) -> Self {
+        Self {
+            contract,
             memory: Memory::new(),
             precedences: Precedences::new(),
             rules: PhantomData,
-        })
+        }
     }
 
     /// What it assumes.

@@ -5,7 +5,7 @@
 /// A plan is a fixed sequence of commands, so that it can be carried out blindly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Plan {
-    /// For so many periods the ego accelerates at [`super::contract::Ego::go`]; then it brakes.
+    /// For so many periods the ego accelerates at [`super::Ego::go`]; then it brakes.
     pub go: u16,
 }
 

@@ -9,7 +9,8 @@ use crate::junction::zone::Zone;
 
 /// The rules, one method each. [`Sound`] is the only implementation that drives.
 ///
-/// The seam exists for tests: a shield in which a single rule is broken must be caught.
+/// The seam exists for tests: a shield in which a single rule is broken must be caught. It is found in
+/// [`crate::dangerous`] alone.
 pub trait Rules {
     /// Bounds on the ego until a plan's first command is in effect: [`margin::departure`].
     #[must_use]

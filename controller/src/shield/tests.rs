@@ -62,7 +62,7 @@ fn margin(scene: &Scene<2>, ego: Vehicle, other: Vehicle, acceleration: f32) -> 
 }
 
 fn margin_by<R: Rules>(scene: &Scene<2>, ego: Vehicle, other: Vehicle, acceleration: f32) -> f32 {
-    let shield = Shield::<2, R>::with_rules(WORST).unwrap();
+    let shield = Shield::<2, R>::with_rules(WORST);
     shield
         .margin(scene, &seen(ego, other), 0.0, acceleration)
         .unwrap()
@@ -70,7 +70,7 @@ fn margin_by<R: Rules>(scene: &Scene<2>, ego: Vehicle, other: Vehicle, accelerat
 
 #[test]
 fn an_intervention_explains_itself() {
-    let mut shield = Shield::new(WORST).unwrap();
+    let mut shield = Shield::new(WORST);
     let scene = crossing();
     // 8 m before its zone at 6 m/s; the other 9 m before its own at 6 m/s.
     let decision = shield.filter(&scene, &seen(vehicle(48.46, 6.0), vehicle(47.46, 6.0)), 3.0);
@@ -83,7 +83,7 @@ fn an_intervention_explains_itself() {
 
 #[test]
 fn good_proposals_pass_unchanged() {
-    let mut shield = Shield::new(WORST).unwrap();
+    let mut shield = Shield::new(WORST);
     let far = seen(vehicle(20.0, 8.0), vehicle(0.0, 8.0));
     let decision = shield.filter(&crossing(), &far, 1.23);
     assert_eq!(
@@ -103,7 +103,7 @@ fn a_zone_that_the_other_has_left_is_free_for_ever() {
 /// What an ego does that goes blind when its only safe plan is to clear a zone: the periods planned, and the
 /// commands for as many periods and one more.
 fn blind<R: Rules>() -> (usize, std::vec::Vec<f32>) {
-    let mut shield = Shield::<2, R>::with_rules(WORST).unwrap();
+    let mut shield = Shield::<2, R>::with_rules(WORST);
     let scene = crossing();
     let fast = seen(vehicle(50.0, 10.0), vehicle(10.0, 5.0));
     assert_eq!(shield.filter(&scene, &fast, 3.0).cause, Cause::Policy);
@@ -156,15 +156,15 @@ fn zones_in_the_wrong_order_are_noticed() {
         others: [Some(vehicle(0.0, 5.0)), Some(vehicle(60.0, 0.0))],
     };
     let margin = |shield: Result<f32, Fault>| shield.unwrap();
-    let sound = Shield::<2>::new(WORST).unwrap();
+    let sound = Shield::<2>::new(WORST);
     assert!(margin(sound.margin(&scene, &seen, 0.0, 0.0)) >= 0.0);
-    let wrong = Shield::<2, FarthestFirst>::with_rules(WORST).unwrap();
+    let wrong = Shield::<2, FarthestFirst>::with_rules(WORST);
     assert!(margin(wrong.margin(&scene, &seen, 0.0, 0.0)) < 0.0);
 }
 
 #[test]
 fn a_broken_contract_is_reported_and_the_plan_is_void() {
-    let mut shield = Shield::new(WORST).unwrap();
+    let mut shield = Shield::new(WORST);
     let scene = crossing();
     shield.filter(&scene, &seen(vehicle(50.0, 10.0), vehicle(10.0, 5.0)), 3.0);
     // The other jumps to its zone; the ego can neither stop nor clear.
@@ -182,7 +182,7 @@ fn a_broken_contract_is_reported_and_the_plan_is_void() {
 
 #[test]
 fn a_speed_limiter_breaks_no_contract() {
-    let mut shield = Shield::new(WORST).unwrap();
+    let mut shield = Shield::new(WORST);
     let scene = crossing();
     let mut breach = |s, speed| {
         let decision = shield.filter(&scene, &seen(vehicle(s, speed), vehicle(0.0, 0.0)), 3.0);
@@ -214,12 +214,12 @@ fn what_the_ego_gets_through_at_least_knows_of_its_speed_limiter() {
 
 #[test]
 fn an_ego_that_stands_in_a_zone_gets_out_of_it() {
-    let mut shield = Shield::new(WORST).unwrap();
+    let mut shield = Shield::new(WORST);
     let (inside, scene) = (vehicle(60.0, 0.0), crossing());
     let decision = shield.filter(&scene, &seen(inside, vehicle(54.0, 5.0)), 0.0);
     assert_eq!(decision.cause, Cause::Fallback(Fault::Unverified));
     assert_eq!(decision.acceleration, 3.0);
-    let mut shield = Shield::new(WORST).unwrap();
+    let mut shield = Shield::new(WORST);
     let decision = shield.filter(&scene, &seen(inside, vehicle(58.0, 0.0)), 0.0);
     assert_eq!(
         decision.acceleration, -3.0,
@@ -443,7 +443,7 @@ proptest! {
         precedence in any::<bool>(),
     ) {
         let contract = if precedence { Contract::ALL_WAY_STOP } else { WORST };
-        let mut shield = Shield::<2>::new(contract).unwrap();
+        let mut shield = Shield::<2>::new(contract);
         for (ego, a, b, proposal) in steps {
             let observation = Observation { ego, others: [a, b] };
             let decision = shield.filter(&scene, &observation, f32::from_bits(proposal));
@@ -458,8 +458,8 @@ proptest! {
         bits in any::<[u32; 16]>(), scene in any_scene(),
         ego in wild_vehicle(), other in wild_vehicle(), proposal in -5.0_f32..5.0,
     ) {
-        let contract = contract_of(bits);
-        if let Ok(mut shield) = Shield::<2>::new(contract) {
+        if let Ok(contract) = contract_of(bits).to_builder().build() {
+            let mut shield = Shield::<2>::new(contract);
             let decision = shield.filter(&scene, &seen(ego, other), proposal);
             let range = -contract.ego.braking..=contract.ego.acceleration;
             prop_assert!(range.contains(&decision.acceleration), "{contract:?} {decision:?}");
@@ -478,7 +478,7 @@ proptest! {
         let factor = if doubled { 2.0 } else { 0.25 };
         let (big, contract) = scaled(scene.clone(), WORST, factor);
         let decide = |scene: &Scene<2>, contract, k: f32| {
-            let mut shield = Shield::<2>::new(contract).unwrap();
+            let mut shield = Shield::<2>::new(contract);
             let observation = seen(vehicle(ego_s * k, ego_v * k), vehicle(other_s * k, other_v * k));
             shield.filter(scene, &observation, proposal * k)
         };

@@ -68,7 +68,7 @@ fn graph(weights: &Weights<'_>) -> Graph {
     let most = tensor("largest", &[], &[MAX_ACCELERATION]);
     chain.apply("Mul", "acceleration", [most]);
 
-    let labels: Vec<_> = weights.features.labels().collect();
+    let labels: Vec<_> = weights.features().labels().collect();
     Graph {
         name: "policy".to_owned(),
         node: chain.nodes,

@@ -42,7 +42,7 @@ fn outputs(words: &[u32], features: &[f32]) -> [f32; 4] {
         .zip(weights.normalisation())
         .map(|(x, (c, s))| ((x - c) * s).clamp(-LIMIT, LIMIT))
         .collect();
-    weights.network.forward(&inputs)
+    weights.network().forward(&inputs)
 }
 
 #[test]
@@ -53,9 +53,9 @@ fn what_is_exported_comes_back_with_the_bits_of_its_outputs() {
             let bytes = export(&Weights::parse(&words).unwrap());
             let back = import(&bytes, Told::default()).unwrap();
             let weights = Weights::parse(&back).unwrap();
-            assert_eq!(weights.features, features);
-            assert_eq!(weights.perspective, perspective);
-            assert_eq!(weights.network.width(), width);
+            assert_eq!(weights.features(), features);
+            assert_eq!(weights.perspective(), perspective);
+            assert_eq!(weights.network().width(), width);
             assert_ne!(weights.provenance(), [5; 32]);
             for seed in 0..50 {
                 let x = noise(seed).map(|x| 40.0 * x).take(features.count());
@@ -213,7 +213,7 @@ fn actors_of_one_to_three_hidden_layers_of_any_width_fly() {
         let graph = actor(sizes);
         let words = import(&bytes(graph.clone()), ROUTE).unwrap();
         let weights = Weights::parse(&words).unwrap();
-        assert_eq!(weights.perspective, Perspective::Ego);
+        assert_eq!(weights.perspective(), Perspective::Ego);
         for seed in 0..50 {
             let x: Vec<f32> = noise(seed).map(|x| 30.0 * x).take(14).collect();
             let got = outputs(&words, &x).map(|mean| 3.0 * mean.tanh());

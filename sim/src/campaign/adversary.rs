@@ -57,12 +57,12 @@ impl Adversary {
     ) -> f32 {
         let contract = &scenario.setup.contract;
         let wanted = self.wanted(scenario, states, me, rng);
-        let limit = (contract.other.max_speed - states[me].v) / STEP;
+        let limit = (contract.other().max_speed - states[me].v) / STEP;
         let free = wanted
-            .clamp(-contract.other.braking, contract.other.acceleration)
+            .clamp(-contract.other().braking, contract.other().acceleration)
             .min(limit);
         if self.must_brake(scenario, states, me) {
-            free.min(-contract.follower.braking)
+            free.min(-contract.follower().braking)
         } else {
             free
         }
@@ -99,7 +99,7 @@ impl Adversary {
         });
         self.unsafe_for = if too_near { self.unsafe_for + 1 } else { 0 };
         // The gap became unsafe up to a step ago, and this command lasts for another.
-        let free = contract.follower.reaction / STEP - 2.0;
+        let free = contract.follower().reaction / STEP - 2.0;
         self.unsafe_for as f32 > free
     }
 }

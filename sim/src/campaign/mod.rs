@@ -11,15 +11,15 @@ pub use scenario::{Scenario, Setup};
 
 use crate::judge::Judge;
 use adversary::Adversary;
+use cede_controller::dangerous::{Rules, Sound};
 use cede_controller::kinematics::{STEP, State, advance};
-use cede_controller::shield::{Rules, Sound};
 use cede_controller::{Cause, Decision, Fault, Footprint, Observation, Shield, Vehicle};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
 /// Most other vehicles of a scenario.
-pub const OTHERS: usize = cede_controller::junction::scene::MAX_OTHERS;
+pub const OTHERS: usize = cede_controller::MAX_OTHERS;
 
 /// What a campaign saw.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -132,16 +132,18 @@ impl<R: Rules> World<R> {
     fn new(scenario: Scenario, mut rng: Pcg64) -> Self {
         let count = scenario.vehicles.len();
         let minds = (0..count)
-            .map(|i| match Shield::with_rules(scenario.setup.contract) {
-                Ok(shield) if i == 0 || scenario.setup.everyone => Mind::Shielded {
-                    shield: Box::new(shield),
+            .map(|i| {
+                if i > 0 && !scenario.setup.everyone {
+                    return Mind::Adversary(Adversary::random(&mut rng));
+                }
+                Mind::Shielded {
+                    shield: Box::new(Shield::with_rules(scenario.setup.contract)),
                     careless: Careless {
                         acceleration: 0.0,
                         left: 0,
                     },
                     blind: 0,
-                },
-                _ => Mind::Adversary(Adversary::random(&mut rng)),
+                }
             })
             .collect();
         Self {
@@ -224,9 +226,9 @@ impl<R: Rules> World<R> {
         let mut sense = |j: usize| {
             let mut error = |size: f32| size * rng.random_range(-1.0..=1.0_f32);
             let state = self.states[j];
-            let speed = state.v + error(contract.speed_error);
+            let speed = state.v + error(contract.speed_error());
             Vehicle {
-                s: state.s + error(contract.position_error),
+                s: state.s + error(contract.position_error()),
                 speed: if speed > 0.0 { speed } else { 0.0 },
                 pose: self.scenario.vehicles[j].route.pose(state.s),
             }
@@ -244,7 +246,7 @@ impl<R: Rules> World<R> {
 
     /// One step of everybody.
     fn advance(&mut self) {
-        let late = f64::from(self.scenario.setup.contract.latency / STEP);
+        let late = f64::from(self.scenario.setup.contract.latency() / STEP);
         for i in 0..self.states.len() {
             let shielded = matches!(self.minds[i], Mind::Shielded { .. });
             // Late by a whole period or not at all: the extremes of what the contract allows.

@@ -3,9 +3,10 @@
 use super::OTHERS;
 use cede_controller::kinematics::State;
 use cede_controller::separation::OrientedBox;
-use cede_controller::shield::contract::Precedence;
 use cede_controller::shield::margin::safe_gap;
-use cede_controller::{Contract, Footprint, Path, Point, RightOfWay, Route, Scene, Zone};
+use cede_controller::{
+    Contract, ContractBuilder, Footprint, Path, Point, Precedence, RightOfWay, Route, Scene, Zone,
+};
 use rand::RngExt;
 use rand_pcg::Pcg64;
 use std::f32::consts::{FRAC_PI_2, TAU};
@@ -42,11 +43,13 @@ impl Setup {
     };
 
     /// Every vehicle is shielded; they drive a little slower than the others that they fear.
+    ///
+    /// # Panics
+    /// If `contract` does not allow for 14 m/s: its rule of precedence together with a speed error of some m/s.
     #[must_use]
     pub const fn everyone(contract: Contract, vehicles: usize) -> Self {
         let mut setup = Self::ADVERSARIES;
-        setup.contract = contract;
-        setup.contract.ego.max_speed = 14.0;
+        setup.contract = valid(contract.to_builder().ego_max_speed(14.0));
         setup.vehicles = vehicles;
         setup.everyone = true;
         setup
@@ -60,8 +63,8 @@ impl Setup {
             ..Self::ADVERSARIES
         };
         let noisy = |mut setup: Self| {
-            setup.contract.position_error = 0.3;
-            setup.contract.speed_error = 0.3;
+            let sensed = setup.contract.to_builder();
+            setup.contract = valid(sensed.position_error(0.3).speed_error(0.3));
             setup
         };
         let (worst, stop) = (Contract::WORST_CASE, Contract::ALL_WAY_STOP);
@@ -79,13 +82,12 @@ impl Setup {
             steps: 200,
             ..at_rest
         };
-        turns.contract.speed_error = 0.3;
-        turns.contract.precedence = Some(Precedence {
-            patience: 5,
-            ..Precedence::ALL_WAY_STOP
-        });
+        let mut rule = Precedence::ALL_WAY_STOP;
+        rule.patience = 5;
+        let impatient = turns.contract.to_builder().precedence(Some(rule));
+        turns.contract = valid(impatient.speed_error(0.3));
         let mut slow = among(3);
-        slow.contract.ego.max_speed = 1.5;
+        slow.contract = valid(slow.contract.to_builder().ego_max_speed(1.5));
         [
             ("one adversary", among(2)),
             ("three adversaries", among(4)),
@@ -174,12 +176,23 @@ impl Scenario {
     }
 }
 
+/// The contract of a set-up.
+///
+/// # Panics
+/// If a number is out of its range.
+const fn valid(numbers: ContractBuilder) -> Contract {
+    match numbers.build() {
+        Ok(contract) => contract,
+        Err(_) => panic!("a number of a set-up's contract is out of its range"),
+    }
+}
+
 /// A shielded vehicle's limiter errs as its sensors do. One that no shielded vehicle has to fear may do without:
 /// the guarantee holds either way.
 fn limit(setup: Setup, rng: &mut Pcg64) -> f32 {
     let contract = setup.contract;
     if setup.everyone || rng.random_bool(0.5) {
-        contract.ego.max_speed + contract.speed_error * rng.random_range(-1.0..=1.0_f32)
+        contract.ego().max_speed + contract.speed_error() * rng.random_range(-1.0..=1.0_f32)
     } else {
         f32::INFINITY
     }
@@ -247,7 +260,7 @@ fn fits(setup: Setup, (route, start): &(Route<32>, State), placed: &[(Route<32>,
 /// together have no room.
 fn leaves_room(setup: Setup, zone: &Zone, ego: &State, other: &State) -> bool {
     let contract = &setup.contract;
-    let (lead, error) = (ego.s - other.s, contract.position_error);
+    let (lead, error) = (ego.s - other.s, contract.position_error());
     let middle = 0.5 * (zone.lead.from + zone.lead.to);
     let entered = ego.s + 2.0 * error >= zone.ego.from && other.s <= zone.other.to;
     let ahead = zone.is_lane() && entered && lead + 2.0 * error >= middle;

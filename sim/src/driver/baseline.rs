@@ -1,7 +1,6 @@
 //! The rule-based drivers by name.
 
 use super::{DriverFactory, Human, Idm, InitialSpeed, Logistic, MeanSpeed, NearerFirst, Replay};
-use cede_controller::ContractError;
 use cede_data::encounter::Encounter;
 use std::fmt;
 use std::str::FromStr;
@@ -32,9 +31,6 @@ pub enum FitError {
     /// It learns from recorded encounters, and there is none to learn from.
     #[error("driver `{0}` is fitted on the training split, which is empty here")]
     NoTraining(Baseline),
-    /// They carry a shield, and it cannot be built.
-    #[error("the shield's contract: {0}")]
-    Contract(#[from] ContractError),
 }
 
 impl Baseline {

@@ -4,8 +4,8 @@ use super::{Driver, DriverFactory, View};
 use crate::observation_model::Bystanders;
 use cede_controller::kinematics::State;
 use cede_controller::{
-    Cause, Contract, ContractError, Controller, Decision, Footprint, Observation, Part, Path,
-    Policy, Scene, TrafficContext, Vehicle,
+    Cause, Contract, Controller, Decision, Footprint, Observation, Part, Path, Policy, Scene,
+    TrafficContext, Vehicle,
 };
 use cede_data::encounter::{Encounter, Role};
 
@@ -19,12 +19,9 @@ pub struct Cede {
 
 impl Cede {
     /// Drives with `policy`; the shield assumes `contract`.
-    ///
-    /// # Errors
-    /// The first number of `contract` that is out of its range.
-    pub fn new(policy: Policy<'static>, contract: Contract) -> Result<Self, ContractError> {
-        let contract = contract.checked()?;
-        Ok(Self { policy, contract })
+    #[must_use]
+    pub const fn new(policy: Policy<'static>, contract: Contract) -> Self {
+        Self { policy, contract }
     }
 }
 
@@ -34,16 +31,15 @@ impl DriverFactory for Cede {
     }
 
     fn driver(&self, encounter: &Encounter, ego: usize, _: u64) -> Box<dyn Driver> {
-        let controller = Controller::new(self.policy, self.contract, part(ego));
-        match (controller, scene(encounter, ego)) {
-            (Ok(controller), Some(scene)) => Box::new(Seat {
-                controller,
+        match scene(encounter, ego) {
+            Some(scene) => Box::new(Seat {
+                controller: Controller::new(self.policy, self.contract, part(ego)),
                 scene,
                 bystanders: Bystanders::new(encounter, ego),
                 last: None,
             }),
-            // The contract was checked; without a vehicle to meet there is nothing to decide.
-            _ => Box::new(Nobody),
+            // Without a vehicle to meet there is nothing to decide.
+            None => Box::new(Nobody),
         }
     }
 }

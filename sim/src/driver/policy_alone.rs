@@ -29,7 +29,7 @@ impl DriverFactory for PolicyAlone {
         // The contract is not looked at: only the shield does.
         let controller = Controller::new(self.policy, Contract::WORST_CASE, part(ego));
         Box::new(Alone {
-            seat: controller.ok().zip(scene(encounter, ego)),
+            seat: scene(encounter, ego).map(|scene| (controller, scene)),
             bystanders: Bystanders::new(encounter, ego),
         })
     }

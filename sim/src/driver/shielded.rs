@@ -1,7 +1,7 @@
 //! Any driver behind the shield.
 
 use super::{Driver, DriverFactory, View, observe, scene};
-use cede_controller::{Cause, Contract, ContractError, Scene, Shield};
+use cede_controller::{Cause, Contract, Scene, Shield};
 use cede_data::encounter::Encounter;
 
 /// Passes what another kind of driver wants through the shield that the controller carries.
@@ -12,12 +12,9 @@ pub struct Shielded {
 
 impl Shielded {
     /// Shields `drivers` under `contract`.
-    ///
-    /// # Errors
-    /// The first number of `contract` that is out of its range.
-    pub fn new(drivers: Box<dyn DriverFactory>, contract: Contract) -> Result<Self, ContractError> {
-        let contract = contract.checked()?;
-        Ok(Self { drivers, contract })
+    #[must_use]
+    pub fn new(drivers: Box<dyn DriverFactory>, contract: Contract) -> Self {
+        Self { drivers, contract }
     }
 }
 
@@ -28,15 +25,15 @@ impl DriverFactory for Shielded {
 
     fn driver(&self, encounter: &Encounter, ego: usize, seed: u64) -> Box<dyn Driver> {
         let driver = self.drivers.driver(encounter, ego, seed);
-        match (Shield::new(self.contract), scene(encounter, ego)) {
-            (Ok(shield), Some(scene)) => Box::new(Behind {
+        match scene(encounter, ego) {
+            Some(scene) => Box::new(Behind {
                 driver,
-                shield,
+                shield: Shield::new(self.contract),
                 scene,
                 cause: Cause::Policy,
             }),
-            // The contract was checked; with nobody to meet there is nothing to shield from.
-            _ => driver,
+            // With nobody to meet there is nothing to shield from.
+            None => driver,
         }
     }
 }
@@ -86,7 +83,7 @@ mod tests {
             Episode::run(&encounter, &mut drivers, Some(clearance(&encounter)))
         };
         assert_eq!(run(&InitialSpeed).end, End::Collision);
-        let shielded = Shielded::new(Box::new(InitialSpeed), Contract::WORST_CASE).unwrap();
+        let shielded = Shielded::new(Box::new(InitialSpeed), Contract::WORST_CASE);
         let episode = run(&shielded);
         assert_ne!(episode.end, End::Collision);
         assert!(Measures::of(&encounter, &episode, &[Role::Left]).shielded > 0.0);

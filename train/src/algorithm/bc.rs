@@ -3,7 +3,7 @@
 //! The paper's first baseline: a deterministic joint policy, fitted by least
 //! squares. It learns from recorded states only, not from states that it reaches itself.
 
-use crate::driving::inputs::{FeatureSetName, Inputs};
+use crate::driving::inputs::Inputs;
 use crate::driving::policy_view::PolicyView;
 use crate::nn::adam::Adam;
 use crate::nn::network::{Delta, Network, Tape};
@@ -19,7 +19,6 @@ use serde::{Deserialize, Serialize};
 #[serde(default, deny_unknown_fields)]
 pub struct BcSettings {
     /// The network's inputs; the paper's eight numbers by default.
-    #[serde(with = "FeatureSetName")]
     pub features: FeatureSet,
     /// Number of updates.
     pub updates: u32,

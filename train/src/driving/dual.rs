@@ -1,7 +1,6 @@
 //! A number with its derivatives: what the controller's formulas become when a gradient goes through them.
 
-use cede_controller::Real;
-use cede_controller::real::Elementary;
+use cede_controller::{Elementary, Real};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 /// How many variables derivatives are taken by.

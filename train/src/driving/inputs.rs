@@ -9,7 +9,6 @@ use serde::{Deserialize, Serialize};
 /// A feature set with the centre and the scale of each feature.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
-    #[serde(with = "FeatureSetName")]
     features: FeatureSet,
     /// Centre of each feature.
     pub centres: Vec<f32>,
@@ -65,23 +64,12 @@ impl Inputs {
     }
 }
 
-/// Serialises a [`FeatureSet`] as its name, for fields marked `#[serde(with = "FeatureSetName")]`.
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "FeatureSet", rename_all = "kebab-case")]
-pub(crate) enum FeatureSetName {
-    Raw,
-    Route,
-    Traffic,
-    Scene,
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[derive(Debug, PartialEq, Serialize, Deserialize)]
     struct Settings {
-        #[serde(with = "FeatureSetName")]
         features: FeatureSet,
     }
 

@@ -59,8 +59,8 @@ fn moving(vehicle: &VehicleState, distance: usize) -> VehicleState<Dual> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cede_controller::policy::pair::{Part, RightOfWay};
     use cede_controller::{ConflictKind, Footprint, Point, Pose};
+    use cede_controller::{Part, RightOfWay};
 
     fn pair([d, v, other_d, other_v]: [f32; 4], surrounded: bool) -> Pair {
         let vehicle_state = |direction: Point, distance: f32, speed: f32| VehicleState {

@@ -8,7 +8,7 @@ use super::motion::{
 use super::term::Term;
 use super::{Claim, Lemma};
 use cede_controller::Real;
-use cede_controller::shield::contract::Follower;
+use cede_controller::dangerous::unchecked;
 use cede_controller::shield::reach::Reach;
 use cede_controller::shield::{Contract, margin};
 
@@ -45,7 +45,7 @@ pub(super) fn lemmas() -> Vec<Lemma> {
             (
                 "a leader that brakes as gently as a follower",
                 &behind(|contract, speed| {
-                    Reach::start(speed).rest(Term::of(contract.follower.braking))
+                    Reach::start(speed).rest(Term::of(contract.follower().braking))
                 }),
             ),
         ),
@@ -59,13 +59,7 @@ pub(super) fn lemmas() -> Vec<Lemma> {
             (
                 "the reaction time forgotten",
                 &ahead(|contract, speed, ego_speed| {
-                    let at_once = Contract {
-                        follower: Follower {
-                            reaction: 0.0,
-                            ..contract.follower
-                        },
-                        ..*contract
-                    };
+                    let at_once = unchecked(contract.to_builder().follower_reaction(0.0));
                     margin::safe_gap(&at_once, speed, ego_speed)
                 }),
             ),
@@ -79,7 +73,7 @@ pub(super) fn lemmas() -> Vec<Lemma> {
             &merge(margin::enters_ahead),
             (
                 "the other's way until then forgotten",
-                &merge(|contract, gap, _, needed| gap - needed - Term::of(contract.slack)),
+                &merge(|contract, gap, _, needed| gap - needed - Term::of(contract.slack())),
             ),
         ),
     ]
@@ -97,7 +91,7 @@ fn crossing(rule: fn(&Contract, Term, Term) -> Reach<Term>) -> Claim {
             time.at_most(clears),
             other.at_most(margin::rush(&contract, seen, time).distance),
         ],
-        other.at_most(distance - Term::of(contract.slack)),
+        other.at_most(distance - Term::of(contract.slack())),
     )
 }
 
@@ -135,7 +129,7 @@ fn behind(rule: fn(&Contract, Term) -> Term) -> Claim {
             not_negative([spare, seen]),
             other.distance.equal(number(0.0)),
             seen.at_most(other.speed),
-            stops(other, -Term::of(contract.other.braking), end),
+            stops(other, -Term::of(contract.other().braking), end),
             ego.at_most(rest),
         ],
         not_negative([end.distance + gap - ego]),
@@ -149,8 +143,8 @@ fn ahead(rule: fn(&Contract, Term, Term) -> Term) -> Claim {
         [["t", "t_v"], ["t_then", "t_v_then"], ["t_end", "t_v_end"]].map(state);
     let [ego, ego_end] = [["s", "s_v"], ["s_end", "s_v_end"]].map(state);
     let hardest = Real::max(
-        Term::of(contract.ego.braking),
-        Term::of(contract.follower.braking),
+        Term::of(contract.ego().braking),
+        Term::of(contract.follower().braking),
     );
     let zero = number(0.0);
     Claim::new(
@@ -161,9 +155,13 @@ fn ahead(rule: fn(&Contract, Term, Term) -> Term) -> Claim {
             ego.distance.equal(zero),
             within(
                 then,
-                margin::rush(&contract, other.speed, Term::of(contract.follower.reaction)),
+                margin::rush(
+                    &contract,
+                    other.speed,
+                    Term::of(contract.follower().reaction),
+                ),
             ),
-            stops(then, -Term::of(contract.follower.braking), end),
+            stops(then, -Term::of(contract.follower().braking), end),
             stops(ego, -hardest, ego_end),
         ],
         not_negative([gap, gap + ego_end.distance - end.distance]),
@@ -185,7 +183,7 @@ fn merge(rule: EntersAhead) -> Claim {
             band.at_most(s_in - t_in),
             not_negative([spare, needed, v, time]),
             s.at_most(seen + rush.distance),
-            number(0.0).less(Term::of(contract.slack)),
+            number(0.0).less(Term::of(contract.slack())),
         ],
         s.less(s_in),
     )

@@ -3,9 +3,8 @@
 use super::formula::Formula;
 use super::symbol::stand_ins;
 use super::term::Term;
-use cede_controller::Real;
-use cede_controller::shield::Contract;
-use cede_controller::shield::contract::{Ego, Follower, Other};
+use cede_controller::dangerous::unchecked;
+use cede_controller::{Contract, Real};
 
 /// The contract of which nothing is known but what [`assumed`] says.
 pub(super) fn any_contract() -> Contract {
@@ -25,43 +24,31 @@ pub(super) fn any_contract() -> Contract {
         reaction,
         follower_braking,
     ] = stand_ins();
-    Contract {
-        period,
-        latency,
-        position_error,
-        speed_error,
-        slack,
-        ego: Ego {
-            max_speed,
-            acceleration,
-            go,
-            braking,
-        },
-        other: Other {
-            max_speed: other_max_speed,
-            acceleration: other_acceleration,
-            braking: other_braking,
-        },
-        follower: Follower {
-            reaction,
-            braking: follower_braking,
-        },
-        precedence: None,
-    }
+    let symbols = Contract::builder()
+        .period(period)
+        .latency(latency)
+        .position_error(position_error)
+        .speed_error(speed_error)
+        .slack(slack)
+        .ego_max_speed(max_speed)
+        .ego_acceleration(acceleration)
+        .ego_go(go)
+        .ego_braking(braking)
+        .other_max_speed(other_max_speed)
+        .other_acceleration(other_acceleration)
+        .other_braking(other_braking)
+        .follower_reaction(reaction)
+        .follower_braking(follower_braking);
+    unchecked(symbols)
 }
 
-/// What [`Contract::checked`] demands of the numbers, but for their upper limits, which no lemma needs.
+/// What [`cede_controller::ContractBuilder::build`] demands of the numbers, but for their upper limits, which no lemma needs.
 pub(super) fn assumed() -> Vec<Formula> {
     let contract = any_contract();
-    let Contract {
-        ego,
-        other,
-        follower,
-        ..
-    } = contract;
+    let (ego, other, follower) = (contract.ego(), contract.other(), contract.follower());
     let (of, zero) = (Term::of, Term::of(0.0));
     let positive = [
-        contract.period,
+        contract.period(),
         ego.max_speed,
         ego.acceleration,
         ego.go,
@@ -72,16 +59,16 @@ pub(super) fn assumed() -> Vec<Formula> {
         follower.braking,
     ];
     let not_negative = [
-        contract.latency,
-        contract.position_error,
-        contract.speed_error,
-        contract.slack,
+        contract.latency(),
+        contract.position_error(),
+        contract.speed_error(),
+        contract.slack(),
         follower.reaction,
     ];
     let positive = positive.map(|x| zero.less(of(x)));
     let not_negative = not_negative.map(|x| zero.at_most(of(x)));
     let ordered = [
-        (contract.latency, contract.period),
+        (contract.latency(), contract.period()),
         (ego.go, ego.acceleration),
         (ego.braking, other.braking),
         (follower.braking, other.braking),

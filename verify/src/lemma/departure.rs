@@ -41,8 +41,8 @@ pub(super) fn lemmas() -> Vec<Lemma> {
                 "the brakes' latency forgotten",
                 &departs(
                     |contract, speed, previous, command| Departure {
-                        braking: Reach::start(speed + Term::of(contract.speed_error))
-                            .at_most(Real::max(previous[1], command), Term::of(contract.period)),
+                        braking: Reach::start(speed + Term::of(contract.speed_error()))
+                            .at_most(Real::max(previous[1], command), Term::of(contract.period())),
                         ..margin::departure(contract, speed, previous, command)
                     },
                     brakes,
@@ -174,7 +174,10 @@ fn departs(rule: Rule, say: impl Fn(&First) -> Claim) -> Claim {
     let sensed = speed("sensed");
     let [previous, least, most, command] =
         ["previous", "previous_least", "previous_most", "command"].map(acceleration);
-    let (error, latency) = (Term::of(contract.speed_error), Term::of(contract.latency));
+    let (error, latency) = (
+        Term::of(contract.speed_error()),
+        Term::of(contract.latency()),
+    );
     let states = [
         ["s", "v"],
         ["s_latency", "v_latency"],
@@ -190,7 +193,7 @@ fn departs(rule: Rule, say: impl Fn(&First) -> Claim) -> Claim {
         previous,
         bounds: [least, most],
         states,
-        times: [latency, Term::of(contract.period) - latency, latency],
+        times: [latency, Term::of(contract.period()) - latency, latency],
     };
     let [start, ..] = states;
     let mut claim = say(&first);
@@ -201,13 +204,13 @@ fn departs(rule: Rule, say: impl Fn(&First) -> Claim) -> Claim {
         start.speed.at_most(sensed + error),
         least.at_most(previous),
         previous.at_most(most),
-        (-Term::of(contract.ego.braking)).at_most(command),
+        (-Term::of(contract.ego().braking)).at_most(command),
     ]);
     claim
 }
 
 fn brakes(first: &First) -> Claim {
-    let braking = -Term::of(first.contract.ego.braking);
+    let braking = -Term::of(first.contract.ego().braking);
     let last = Real::max(first.command, braking);
     Claim::new(
         first.at_most(last),
@@ -216,7 +219,7 @@ fn brakes(first: &First) -> Claim {
 }
 
 fn goes_at_most(first: &First) -> Claim {
-    let last = Real::max(first.command, Term::of(first.contract.ego.go));
+    let last = Real::max(first.command, Term::of(first.contract.ego().go));
     Claim::new(
         first.at_most(last),
         within(first.states[3], first.departure.most),
@@ -237,7 +240,7 @@ impl First {
 }
 
 fn goes_at_least(first: &First) -> Claim {
-    let last = Real::min(first.command, Term::of(first.contract.ego.go));
+    let last = Real::min(first.command, Term::of(first.contract.ego().go));
     let known = Real::min(first.bounds[0], first.command);
     let least = [known, first.command, last];
     let truth = [
@@ -245,7 +248,7 @@ fn goes_at_least(first: &First) -> Claim {
         first.command,
         last,
     ];
-    let error = Term::of(first.contract.speed_error);
+    let error = Term::of(first.contract.speed_error());
     let mut bound = Reach::start(first.speed - error);
     let (mut given, mut opaque) = (Vec::new(), Vec::new());
     for i in 0..3 {

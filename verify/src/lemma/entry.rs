@@ -10,8 +10,8 @@ use super::formula::{Formula, all, any};
 use super::motion::{not_negative, number, seconds, speed, state};
 use super::term::Term;
 use super::{Claim, Lemma};
+use cede_controller::Contract;
 use cede_controller::Real;
-use cede_controller::shield::contract::Contract;
 use cede_controller::shield::margin;
 use cede_controller::shield::reach::Reach;
 
@@ -61,15 +61,15 @@ struct Numbers {
 fn numbers() -> Numbers {
     let contract = any_contract();
     let of = Term::of;
-    let braking = of(contract.follower.braking);
+    let braking = of(contract.follower().braking);
     Numbers {
         contract,
-        a: of(contract.ego.acceleration),
-        other_a: of(contract.other.acceleration),
+        a: of(contract.ego().acceleration),
+        other_a: of(contract.other().acceleration),
         braking,
-        hardest: Real::max(of(contract.ego.braking), braking),
-        most: of(contract.ego.max_speed),
-        other_most: of(contract.other.max_speed),
+        hardest: Real::max(of(contract.ego().braking), braking),
+        most: of(contract.ego().max_speed),
+        other_most: of(contract.other().max_speed),
     }
 }
 
@@ -107,7 +107,7 @@ impl Numbers {
 fn slow(weaker: bool) -> Claim {
     let n = numbers();
     let (seen, ego) = (speed("t_v"), speed("s_v"));
-    let reacted = margin::rush(&n.contract, seen, Term::of(n.contract.follower.reaction));
+    let reacted = margin::rush(&n.contract, seen, Term::of(n.contract.follower().reaction));
     let gap = margin::safe_gap(&n.contract, seen, ego);
     Claim::new(
         [

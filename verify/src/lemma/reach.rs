@@ -95,10 +95,10 @@ pub(super) fn lemmas() -> Vec<Lemma> {
             (
                 "the limiter's error with the wrong sign",
                 &clears(|contract, least, target| {
-                    let go = Term::of(contract.ego.go);
-                    let cap = Term::of(contract.ego.max_speed) + Term::of(contract.speed_error);
+                    let go = Term::of(contract.ego().go);
+                    let cap = Term::of(contract.ego().max_speed) + Term::of(contract.speed_error());
                     let (time, speed) = least.until(target, go, cap);
-                    let late = Term::of(contract.period) + Term::of(contract.latency);
+                    let late = Term::of(contract.period()) + Term::of(contract.latency());
                     (time + late, speed)
                 }),
             ),
@@ -137,7 +137,7 @@ pub(super) fn lemmas() -> Vec<Lemma> {
             (
                 "an other that brakes as gently as a follower",
                 &earliest(|contract, speed| {
-                    Reach::start(speed).rest(Term::of(contract.follower.braking))
+                    Reach::start(speed).rest(Term::of(contract.follower().braking))
                 }),
             ),
         ),
@@ -204,13 +204,13 @@ fn rush(rule: impl Fn(&Contract, Term, Term) -> Reach<Term>) -> Claim {
     let contract = any_contract();
     let (from, to) = (state(["t", "v"]), state(["t_end", "v_end"]));
     let (a, time, seen) = (acceleration("a"), seconds("time"), speed("seen"));
-    let most = Term::of(contract.other.max_speed);
+    let most = Term::of(contract.other().max_speed);
     Claim::new(
         [
             not_negative([time, from.speed]),
             from.distance.at_most(number(0.0)),
             from.speed.at_most(seen),
-            a.at_most(Term::of(contract.other.acceleration)),
+            a.at_most(Term::of(contract.other().acceleration)),
             moves(from, a, time, to),
             any([to.speed.at_most(most), to.speed.at_most(seen)]),
         ],
@@ -240,9 +240,9 @@ fn clears(rule: impl Fn(&Contract, Reach<Term>, Term) -> (Term, Term)) -> Claim 
     let contract = any_contract();
     let (from, to) = (state(["s", "v"]), state(["s_end", "v_end"]));
     let (target, ramp) = (Term::symbol("target", "m"), seconds("ramp"));
-    let (cap, go) = (limiter(&contract), Term::of(contract.ego.go));
+    let (cap, go) = (limiter(&contract), Term::of(contract.ego().go));
     let (clears, least_speed) = rule(&contract, from, target);
-    let time = clears - Term::of(contract.period) - Term::of(contract.latency);
+    let time = clears - Term::of(contract.period()) - Term::of(contract.latency());
     Claim::new(
         [
             not_negative([from.speed]),
@@ -259,7 +259,7 @@ fn clears(rule: impl Fn(&Contract, Reach<Term>, Term) -> (Term, Term)) -> Claim 
 
 /// The speed from which on a limiter may hold it.
 pub(super) fn limiter(contract: &Contract) -> Term {
-    Term::of(contract.ego.max_speed) - Term::of(contract.speed_error)
+    Term::of(contract.ego().max_speed) - Term::of(contract.speed_error())
 }
 
 fn rest(rule: impl Fn(&Contract, Reach<Term>, Term) -> Term) -> Claim {
@@ -271,8 +271,8 @@ fn rest(rule: impl Fn(&Contract, Reach<Term>, Term) -> Term) -> Claim {
         [
             not_negative([time, from.speed]),
             within(from, most),
-            a.at_most(Term::of(contract.ego.go)),
-            braking.at_most(-Term::of(contract.ego.braking)),
+            a.at_most(Term::of(contract.ego().go)),
+            braking.at_most(-Term::of(contract.ego().braking)),
             moves(from, a, time, then),
             stops(then, braking, end),
         ],
@@ -284,7 +284,7 @@ fn brakes(rule: impl Fn(Reach<Term>, Term) -> Term) -> Claim {
     let contract = any_contract();
     let (from, to) = (state(["s", "v"]), state(["s_end", "v_end"]));
     let (a, time) = (acceleration("a"), seconds("time"));
-    let braking = Term::of(contract.ego.braking);
+    let braking = Term::of(contract.ego().braking);
     Claim::new(
         [
             not_negative([time, from.speed]),
@@ -303,7 +303,7 @@ fn earliest(rule: impl Fn(&Contract, Term) -> Term) -> Claim {
     Claim::new(
         [
             not_negative([time, from.speed]),
-            (-Term::of(contract.other.braking)).at_most(a),
+            (-Term::of(contract.other().braking)).at_most(a),
             moves(from, a, time, to),
         ],
         rests(from).at_most(rests(to)),

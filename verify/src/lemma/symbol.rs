@@ -1,6 +1,6 @@
 //! The quantities that lemmas speak of, and stand-ins for those of a contract.
 //!
-//! The margins read a contract's `f32` and turn each into [`Real::of`](cede_controller::shield::Real::of). A NaN is no number that a contract
+//! The margins read a contract's `f32` and turn each into [`Real::of`](cede_controller::Real::of). A NaN is no number that a contract
 //! may have, so its payload is free to say which symbol it stands for.
 
 /// A quantity that a lemma speaks of.

@@ -22,8 +22,8 @@ pub(super) fn lemmas() -> Vec<Lemma> {
                 "a cap that the limiter may exceed",
                 &clearing(|contract, least, target| {
                     let cap = margin::unlimited::<Term>(contract) * number(0.5);
-                    let (time, speed) = least.until(target, Term::of(contract.ego.go), cap);
-                    let late = Term::of(contract.period) + Term::of(contract.latency);
+                    let (time, speed) = least.until(target, Term::of(contract.ego().go), cap);
+                    let late = Term::of(contract.period()) + Term::of(contract.latency());
                     (time + late, speed)
                 }),
             ),
@@ -71,9 +71,12 @@ fn clearing(rule: fn(&Contract, Reach<Term>, Term) -> (Term, Term)) -> Claim {
     let contract = any_contract();
     let (from, to) = (state(["s", "v"]), state(["s_end", "v_end"]));
     let (time, ramp, target) = (seconds("time"), seconds("ramp"), metres("target"));
-    let (cap, go) = (super::reach::limiter(&contract), Term::of(contract.ego.go));
+    let (cap, go) = (
+        super::reach::limiter(&contract),
+        Term::of(contract.ego().go),
+    );
     let (clears, _) = rule(&contract, from, target);
-    let late = Term::of(contract.period) + Term::of(contract.latency);
+    let late = Term::of(contract.period()) + Term::of(contract.latency());
     Claim::new(
         [
             not_negative([time, from.speed]),
@@ -93,7 +96,7 @@ fn stopping(order: impl Fn(Term, Term) -> Formula) -> Claim {
         state(["s_end", "v_end"]),
     );
     let (time, rest) = (seconds("time"), seconds("left"));
-    let go = Term::of(contract.ego.go);
+    let go = Term::of(contract.ego().go);
     Claim::new(
         [
             not_negative([time, rest, from.speed, to.speed]),

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 /// The same on any number of threads. Cost: a tenth of a second. Never panics.
 #[must_use]
 pub fn shortfall(contract: &Contract) -> f64 {
-    let times = contract.period.to_bits()..=60.0_f32.to_bits();
+    let times = contract.period().to_bits()..=60.0_f32.to_bits();
     let short = |bits| short(contract, f32::from_bits(bits));
     times.into_par_iter().map(short).reduce(|| 0.0, f64::max)
 }
@@ -20,7 +20,7 @@ pub fn shortfall(contract: &Contract) -> f64 {
 /// which is exact where it matters: when the two are close.
 fn short(contract: &Contract, clears: f32) -> f64 {
     let periods = f64::from(margin::periods(contract, clears)) + 1.0;
-    f64::from(clears) - periods * f64::from(contract.period)
+    f64::from(clears) - periods * f64::from(contract.period())
 }
 
 #[cfg(test)]
@@ -31,7 +31,7 @@ mod tests {
     fn a_plan_that_goes_a_period_less_falls_short() {
         let (contract, clears) = (Contract::WORST_CASE, 2.35);
         assert!(short(&contract, clears) < 0.0);
-        assert!(short(&contract, clears) + f64::from(contract.period) > 0.0);
-        assert_eq!(margin::periods(&contract, contract.period), 0);
+        assert!(short(&contract, clears) + f64::from(contract.period()) > 0.0);
+        assert_eq!(margin::periods(&contract, contract.period()), 0);
     }
 }

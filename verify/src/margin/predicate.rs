@@ -48,9 +48,11 @@ impl Input {
     fn range(self, contract: &Contract) -> [f32; 2] {
         match self {
             Self::Speed | Self::OtherSpeed => [0.0, 20.0],
-            Self::Previous | Self::Command => [-contract.ego.braking, contract.ego.acceleration],
+            Self::Previous | Self::Command => {
+                [-contract.ego().braking, contract.ego().acceleration]
+            }
             // Plans that go for more than a minute are not made.
-            Self::Periods => [0.0, 60.0 / contract.period],
+            Self::Periods => [0.0, 60.0 / contract.period()],
             Self::Target | Self::Distance => [-512.0, 512.0],
         }
     }
@@ -120,8 +122,8 @@ impl Predicate {
     pub(super) fn margin<R: Real>(self, contract: &Contract, values: [R; INPUTS]) -> R {
         let [speed, previous, command, distance, fifth, target] = values;
         let departure = margin::departure(contract, speed, [previous, previous], command);
-        let error = R::of(contract.speed_error);
-        let braking = R::of(contract.ego.braking);
+        let error = R::of(contract.speed_error());
+        let braking = R::of(contract.ego().braking);
         let stops = |limit| margin::stops_short(contract, limit, departure.braking.rest(braking));
         let clears = || margin::clearing(contract, departure.least, target);
         match self {
@@ -131,7 +133,7 @@ impl Predicate {
                 stops(distance + margin::earliest_rest(contract, slowest))
             }
             Self::StopsAfterGoing => {
-                let time = fifth * R::of(contract.period);
+                let time = fifth * R::of(contract.period());
                 let rest = margin::rest(contract, departure.most, time);
                 margin::stops_short(contract, distance, rest)
             }

@@ -124,7 +124,7 @@ impl Subject<'_> {
             .predicate
             .margin(self.contract, region.map(Rounded::input));
         let refused = (margin.exact.hi + margin.error).next_up() < 0.0;
-        let without_slack = margin.exact.lo + f64::from(self.contract.slack);
+        let without_slack = margin.exact.lo + f64::from(self.contract.slack());
         let right = without_slack.next_down() >= 0.0;
         let matters = !(refused || right);
         matters.then_some(Piece {

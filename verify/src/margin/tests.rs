@@ -6,20 +6,23 @@ use super::{bound, shortfall};
 use crate::interval::Interval;
 use cede_controller::Real;
 use cede_controller::Route;
-use cede_controller::geometry::{Footprint, Point, Pose};
-use cede_controller::junction::scene::{Path, Scene};
 use cede_controller::junction::zone::{FAR, Zone};
-use cede_controller::observation::{Observation, Vehicle};
 use cede_controller::shield::{Contract, Shield, margin};
+use cede_controller::{Footprint, Point, Pose};
+use cede_controller::{Observation, Vehicle};
+use cede_controller::{Path, Scene};
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 const WORST: Contract = Contract::WORST_CASE;
-const SENSED: Contract = Contract {
-    position_error: 0.3,
-    speed_error: 0.3,
-    ..WORST
+const SENSED: Contract = match Contract::builder()
+    .position_error(0.3)
+    .speed_error(0.3)
+    .build()
+{
+    Ok(contract) => contract,
+    Err(_) => panic!("a number is out of its range"),
 };
 
 /// How far `computed` is from the real number in `exact`, at least.
@@ -158,7 +161,7 @@ proptest! {
         let (ego, road) = (route(&[(-60.0, 0.0), (60.0, 0.0)]), route(&[(0.0, -60.0), (0.0, 60.0)]));
         let [zone] = zones(&ego, &road)[..] else { panic!("one zone") };
         prop_assume!(s < zone.ego.to && other < zone.other.to);
-        let command = if speed < WORST.ego.max_speed { command } else { command.min(0.0) };
+        let command = if speed < WORST.ego().max_speed { command } else { command.min(0.0) };
         let given = |distance, fifth, target| [speed, previous, command, distance, fifth, target];
         let target = zone.ego.to - s;
         let stops = Predicate::Stops.margin(&WORST, given(zone.ego.from - s, 0.0, 0.0));
@@ -177,7 +180,7 @@ proptest! {
         let road = route(&[(-60.0, 0.0), (60.0, 0.0)]);
         let [zone] = zones(&ego, &road)[..] else { panic!("one zone") };
         prop_assume!(zone.is_lane() && s < zone.ego.from && other < zone.other.to);
-        let command = if speed < WORST.ego.max_speed { command } else { command.min(0.0) };
+        let command = if speed < WORST.ego().max_speed { command } else { command.min(0.0) };
         let given = |distance, fifth, target| [speed, previous, command, distance, fifth, target];
         let stop = zone.ego.from - s;
         let gap = zone.lead.from - (s - other);
@@ -243,7 +246,7 @@ fn shield_margin(
         ego: vehicle(own),
         others: [Some(vehicle(other))],
     };
-    let shield = Shield::<1>::new(WORST).unwrap();
+    let shield = Shield::<1>::new(WORST);
     shield
         .margin(&scene(ego, road), &seen, previous, command)
         .unwrap()
@@ -274,7 +277,10 @@ fn the_slack_covers_rounding() {
     ] {
         for contract in [WORST, SENSED] {
             let bound = bound(predicate, &contract, 200_000);
-            assert!(bound.covered_by(contract.slack), "{predicate:?}: {bound:?}");
+            assert!(
+                bound.covered_by(contract.slack()),
+                "{predicate:?}: {bound:?}"
+            );
             assert!(bound.seen <= bound.error && 0.0 < bound.seen);
         }
     }
@@ -283,13 +289,10 @@ fn the_slack_covers_rounding() {
 
 #[test]
 fn no_slack_covers_nothing_and_the_box_is_named() {
-    let contract = Contract {
-        slack: 0.0,
-        ..WORST
-    };
+    let contract = Contract::builder().slack(0.0).build().unwrap();
     for predicate in Predicate::ALL {
         let bound = bound(predicate, &contract, 5_000);
-        assert!(!bound.covered_by(contract.slack));
+        assert!(!bound.covered_by(contract.slack()));
         let (worst, domain) = (bound.worst, predicate.domain(&contract));
         assert!(
             worst

@@ -65,7 +65,7 @@ impl Shield {
         previous: Interval,
         wanted: Interval,
     ) -> Commands {
-        let ego = self.contract.ego;
+        let ego = self.contract.ego();
         let (braking, most) = (f64::from(ego.braking), f64::from(ego.acceleration));
         let wanted = wanted.clamp(-braking, most);
         let verdict = self.margins(states, previous, wanted);
@@ -116,7 +116,7 @@ impl Shield {
         let (contract, zone) = (&self.contract, &self.zone);
         let departure = margin::departure(contract, states.speed, [previous, previous], command);
         let limit = states.distance.add(zone.ego.low());
-        let rest = departure.braking.rest(Interval::of(contract.ego.braking));
+        let rest = departure.braking.rest(Interval::of(contract.ego().braking));
         let stop = margin::stops_short(contract, limit, rest);
         let stop = stop.and(self.stop_by_spare(states, previous, command));
         let target = states.distance.add(zone.ego.high());
@@ -154,15 +154,15 @@ impl Shield {
     /// distance and speed correlate: with a latency of a whole period, the previous command
     /// acts for a period, then this one, then the brakes.
     fn stop_by_spare(&self, states: &States, previous: Interval, command: Interval) -> Interval {
-        let ego = self.contract.ego;
-        let period = Interval::of(self.contract.period);
+        let ego = self.contract.ego();
+        let period = Interval::of(self.contract.period());
         let gone = |v: Interval, a: Interval| {
             let after = Real::max(v.add(a.mul(period)), Interval::ZERO);
             (spent(v, after, period, Interval::of(ego.braking)), after)
         };
         let (first, then) = gone(states.speed, Real::max(previous, command));
         let (second, _) = gone(then, command);
-        let slack = Interval::of(self.contract.slack);
+        let slack = Interval::of(self.contract.slack());
         states.spare.sub(first).sub(second).sub(slack)
     }
 }

@@ -24,7 +24,7 @@ const PLACE: f64 = 1e-4;
 /// rounding. Zones are larger than they need be by ten times that.
 const EDGE: f64 = 2e-3;
 /// What is proposed when there is nobody left to meet, m/s².
-const FREE: f64 = cede_controller::controller::FREE as f64;
+const FREE: f64 = cede_controller::FREE as f64;
 /// Largest proposal of any policy, m/s².
 const MOST: f64 = cede_controller::policy::MAX_ACCELERATION as f64;
 
@@ -87,7 +87,7 @@ impl<'a> Loop<'a> {
     }
 
     fn spare_of(&self, states: &States) -> Interval {
-        let braking = Interval::of(self.shield.contract.ego.braking);
+        let braking = Interval::of(self.shield.contract.ego().braking);
         let stop = states.speed.mul(states.speed).div(braking.scale(2.0));
         states.distance.add(self.shield.zone.ego.low()).sub(stop)
     }
@@ -138,7 +138,7 @@ impl<'a> Loop<'a> {
             speed = speed.and(after.clamp(0.0, f64::INFINITY));
         }
         // Perhaps it is not accelerated beyond its limit.
-        let limit = Interval::of(self.shield.contract.ego.max_speed);
+        let limit = Interval::of(self.shield.contract.ego().max_speed);
         speed = speed.hull(Real::min(speed, Real::max(limit, before.speed)));
         let speed = speed.wider(ROUNDING).clamp(0.0, f64::INFINITY);
         let travel = before.speed.add(speed).mul(period).scale(0.5);
@@ -148,7 +148,7 @@ impl<'a> Loop<'a> {
         let distance = before.distance.sub(travel).wider(ROUNDING);
 
         let (other_distance, other_speed) = self.other(before);
-        let braking = Interval::of(self.shield.contract.ego.braking);
+        let braking = Interval::of(self.shield.contract.ego().braking);
         let lost = spent(before.speed, speed, period, braking).clamp(0.0, f64::INFINITY);
         let mut spare = before
             .spare
@@ -156,7 +156,7 @@ impl<'a> Loop<'a> {
         if commands.stops_short {
             // Braking uses up nothing of what there is to spare, and a command that is accepted for
             // its stop leaves the slack: the latency that was counted on is not needed here.
-            let left = f64::from(self.shield.contract.slack) - super::shield::STOPPING;
+            let left = f64::from(self.shield.contract.slack()) - super::shield::STOPPING;
             let least = before.spare.lo.min(left);
             spare = spare.clamp(least, f64::INFINITY);
         }
@@ -173,7 +173,7 @@ impl<'a> Loop<'a> {
     /// Cuts what distance, speed and what is to spare exclude of each other.
     fn reconciled(&self, mut states: States) -> States {
         states.spare = states.spare.and(self.spare_of(&states));
-        let braking = Interval::of(self.shield.contract.ego.braking).scale(2.0);
+        let braking = Interval::of(self.shield.contract.ego().braking).scale(2.0);
         let entry = self.shield.zone.ego.low();
         let stop = states.speed.mul(states.speed).div(braking);
         let least = states.spare.add(stop).sub(entry).lo;
@@ -200,7 +200,7 @@ impl<'a> Loop<'a> {
     fn other(&self, before: &States) -> (Interval, Interval) {
         let period = Interval::of(STEP);
         let free = before.other_speed.add(self.other_acceleration.mul(period));
-        let most = f64::from(self.shield.contract.other.max_speed).max(before.other_speed.hi);
+        let most = f64::from(self.shield.contract.other().max_speed).max(before.other_speed.hi);
         let speed = free
             .clamp(0.0, most)
             .wider(ROUNDING)

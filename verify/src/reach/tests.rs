@@ -35,8 +35,7 @@ fn drive(scenario: &Scenario, from: [f32; 4], random: &mut Pcg64, steps: usize) 
     let scene = geometry(scenario.setting().right_of_way);
     let conflict = scene.conflicts()[0];
     let policy = Policy::new(embedded::words()).expect("a sound file");
-    let mut controller =
-        Controller::<1>::new(policy, Contract::WORST_CASE, Part::Left).expect("a sound contract");
+    let mut controller = Controller::<1>::new(policy, Contract::WORST_CASE, Part::Left);
     let mut ego = State {
         s: conflict.ego_conflict - from[0],
         v: from[1],
@@ -139,7 +138,7 @@ fn planted_unsound_tubes_are_caught() {
     let weights = Weights::parse(embedded::words()).expect("a sound file");
     let mut parameters = Vec::new();
     let (mut width, mut last) = (0, 0);
-    for layer in weights.network.layers() {
+    for layer in weights.network().layers() {
         width = width.max(layer.biases().len());
         last = parameters.len();
         parameters.extend(layer.biases().chain(layer.weights()));
@@ -147,8 +146,8 @@ fn planted_unsound_tubes_are_caught() {
     parameters[last] += 0.05;
     let (centres, scales): (Vec<f32>, Vec<f32>) = weights.normalisation().unzip();
     let draft = Draft {
-        features: weights.features,
-        perspective: weights.perspective,
+        features: weights.features(),
+        perspective: weights.perspective(),
         width,
         provenance: [0; 32],
         centres: &centres,

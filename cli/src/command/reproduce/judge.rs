@@ -63,7 +63,7 @@ pub(super) fn policies<'d>(
         for (split, encounters) in &job.judged {
             for (shield, contract) in SHIELDS {
                 interrupt::check()?;
-                let drives = drive(trained.policy, contract, encounters, job.seed)?;
+                let drives = drive(trained.policy, contract, encounters, job.seed);
                 let key = Key {
                     algorithm: job.row.algorithm,
                     seed: job.seed,
@@ -90,26 +90,21 @@ fn drive<'d>(
     contract: Option<Contract>,
     encounters: &[&'d Encounter],
     seed: u64,
-) -> Result<Vec<Drive<'d>>, Failure> {
+) -> Vec<Drive<'d>> {
     let protocol = Protocol {
         mode: Mode::Joint,
         until: Until::Conflict,
         seed,
     };
-    let factory = factory(policy, contract)?;
-    Ok(evaluate(&*factory, encounters, protocol))
+    let factory = factory(policy, contract);
+    evaluate(&*factory, encounters, protocol)
 }
 
-fn factory(
-    policy: Policy<'static>,
-    contract: Option<Contract>,
-) -> Result<Box<dyn DriverFactory>, Failure> {
-    let Some(contract) = contract else {
-        return Ok(Box::new(PolicyAlone::new(policy)));
-    };
-    let cede = Cede::new(policy, contract);
-    let cede = cede.map_err(|error| Failure::input(error, "report this as a bug"))?;
-    Ok(Box::new(cede))
+fn factory(policy: Policy<'static>, contract: Option<Contract>) -> Box<dyn DriverFactory> {
+    match contract {
+        None => Box::new(PolicyAlone::new(policy)),
+        Some(contract) => Box::new(Cede::new(policy, contract)),
+    }
 }
 
 /// How the baselines are judged.

@@ -1,7 +1,7 @@
 //! `cede verify campaign`: shielded vehicles among adversaries that keep the contract.
 
 use crate::failure::Failure;
-use cede_controller::shield::Sound;
+use cede_controller::dangerous::Sound;
 use cede_sim::campaign::{Setup, Tally, campaign};
 use clap::Args;
 

@@ -2,8 +2,8 @@
 
 use crate::failure::Failure;
 use crate::threads::Threads;
+use cede_controller::Contract;
 use cede_controller::junction::zone::INFLATION;
-use cede_controller::shield::Contract;
 use cede_verify::margin::{Bound, Predicate, bound, shortfall};
 use clap::Args;
 use std::io::Write as _;
@@ -18,10 +18,13 @@ const CONTRACTS: [(&str, Contract); 2] = [
     ("worst case", Contract::WORST_CASE),
     (
         "sensors that err by 0.3 m and 0.3 m/s",
-        Contract {
-            position_error: 0.3,
-            speed_error: 0.3,
-            ..Contract::WORST_CASE
+        match Contract::builder()
+            .position_error(0.3)
+            .speed_error(0.3)
+            .build()
+        {
+            Ok(contract) => contract,
+            Err(_) => panic!("a number is out of its range"),
         },
     ),
 ];
@@ -83,7 +86,7 @@ impl Margins {
             MarginRow {
                 contract: name,
                 predicate,
-                slack: contract.slack,
+                slack: contract.slack(),
                 bound: bound(predicate, contract, self.boxes),
             }
         })

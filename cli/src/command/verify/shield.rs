@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::report::{Report, command};
 use crate::source::not_empty;
-use cede_controller::{ConflictKind, Contract};
+use cede_controller::{ConflictKind, Contract, ContractBuilder};
 use cede_data::{Dataset, Encounter};
 use cede_sim::transparency::{Swept, Transparency, sweep, transparency};
 use clap::Args;
@@ -42,8 +42,7 @@ impl Shield {
         println!("contract          kind       role    steps  accepted");
         let mut worst = Vec::new();
         for (name, contract) in contracts() {
-            // Every named contract is valid.
-            let rows = transparency(&encounters, contract).unwrap_or_default();
+            let rows = transparency(&encounters, contract);
             for row in &rows {
                 let (kind, role) = (format!("{:?}", row.kind), format!("{:?}", row.role));
                 let share = 100.0 * row.share();
@@ -86,20 +85,20 @@ fn csv(out: &mut dyn Write, rows: &[Swept]) -> io::Result<()> {
 }
 
 fn contracts() -> [(&'static str, Contract); 4] {
-    let worst = Contract::WORST_CASE;
-    let with = |change: fn(&mut Contract)| {
-        let mut contract = worst;
-        change(&mut contract);
-        contract
-    };
+    const fn valid(numbers: ContractBuilder) -> Contract {
+        match numbers.build() {
+            Ok(contract) => contract,
+            Err(_) => panic!("a number is out of its range"),
+        }
+    }
+    const PROMPT: Contract = valid(Contract::builder().latency(0.0));
+    const SENSED: Contract = valid(Contract::builder().position_error(0.3).speed_error(0.3));
+    const SLOW: Contract = valid(Contract::builder().follower_reaction(1.0));
     [
-        ("worst case", worst),
-        ("no latency", with(|c| c.latency = 0.0)),
-        (
-            "errors 0.3",
-            with(|c| (c.position_error, c.speed_error) = (0.3, 0.3)),
-        ),
-        ("reaction 1 s", with(|c| c.follower.reaction = 1.0)),
+        ("worst case", Contract::WORST_CASE),
+        ("no latency", PROMPT),
+        ("errors 0.3", SENSED),
+        ("reaction 1 s", SLOW),
     ]
 }
 

@@ -84,8 +84,8 @@ impl<'a> Golden<'a> {
 /// The controller that is asked: within the worst-case contract, as the left-turner.
 #[must_use]
 #[inline(never)]
-pub fn controller<'w>(policy: &Policy<'w>) -> Option<Controller<'w, OTHERS>> {
-    Controller::new(*policy, Contract::WORST_CASE, Part::Left).ok()
+pub fn controller<'w>(policy: &Policy<'w>) -> Controller<'w, OTHERS> {
+    Controller::new(*policy, Contract::WORST_CASE, Part::Left)
 }
 
 fn other(words: &[u32; ROUTE]) -> Option<(Route<POINTS>, Footprint)> {

@@ -43,7 +43,7 @@ fn scene(policy: &Policy<'_>, random: &mut Random, others: usize) -> Result<Vec<
     let golden = golden.ok_or_else(|| Error::other("no scene at the end"))?;
     let mut scene = golden.scene().map_err(Error::other)?;
     golden.settle(&mut scene);
-    let mut controller = controller(policy).ok_or_else(|| Error::other("no controller"))?;
+    let mut controller = controller(policy);
     words[1] = STEPS as u32;
     for _ in 0..STEPS {
         let question = traffic.observe(random);

@@ -9,8 +9,9 @@ mod console;
 mod counter;
 mod stack;
 
+use cede_controller::policy::embedded;
 use cede_controller::policy::weights::Aligned;
-use cede_controller::{Controller, Decision, Mlp, Policy, Scene, SceneError, embedded};
+use cede_controller::{Controller, Decision, Mlp, Policy, Scene, SceneError};
 use cede_golden::{Golden, OTHERS, QUESTION, answer, controller, observation};
 use cortex_m_rt::entry;
 use cortex_m_semihosting::debug;
@@ -89,8 +90,7 @@ impl Tally {
         golden: &Golden<'_>,
         scene: &Scene<OTHERS>,
     ) -> Option<()> {
-        let mut controller = controller(policy);
-        let controller = controller.as_mut()?;
+        let controller = &mut controller(policy);
         stack::paint();
         for step in golden.steps {
             let (question, expected) = step.split_first_chunk()?;

@@ -1,7 +1,6 @@
 //! Settings of the analytic policy gradient.
 
 use crate::algorithm::apg::cost::Cost;
-use crate::driving::inputs::FeatureSetName;
 use cede_controller::FeatureSet;
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +9,6 @@ use serde::{Deserialize, Serialize};
 #[serde(default, deny_unknown_fields)]
 pub struct ApgSettings {
     /// The network's inputs.
-    #[serde(with = "FeatureSetName")]
     pub features: FeatureSet,
     /// Number of networks to train one after the other and to join to an ensemble.
     pub members: u32,

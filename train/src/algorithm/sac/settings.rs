@@ -1,7 +1,6 @@
 //! Settings of soft actor-critic.
 
 use crate::driving::episodes::Reward;
-use crate::driving::inputs::FeatureSetName;
 use cede_controller::FeatureSet;
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +9,6 @@ use serde::{Deserialize, Serialize};
 #[serde(default, deny_unknown_fields)]
 pub struct SacSettings {
     /// The networks' inputs; the paper's eight numbers by default.
-    #[serde(with = "FeatureSetName")]
     pub features: FeatureSet,
     /// The reward.
     pub reward: Reward,

@@ -23,8 +23,15 @@
 //! boundary of 64 bytes; as every layer's weights then lie on such boundaries too, no vector of weights
 //! straddles two cache lines (it costs a third of the time where it does, and no bit of the result).
 
+mod embed;
+mod encode;
+mod parse;
+
+pub use embed::{Aligned, words};
+pub use encode::Draft;
+
 use crate::policy::features::FeatureSet;
-use crate::policy::mlp::{MAX_WIDTH, Mlp, OUTPUTS};
+use crate::policy::mlp::Mlp;
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 
 const MAGIC: u32 = u32::from_le_bytes(*b"CEDE");
@@ -49,14 +56,23 @@ pub enum Perspective {
 }
 
 /// A weights file, parsed in place.
+///
+/// What was validated stays as it is; there is no other way to make one than [`Weights::parse`].
+///
+/// ```compile_fail,E0616
+/// use cede_controller::{FeatureSet, Weights, WeightsError};
+///
+/// fn other_features<'a>(words: &'a [u32]) -> Result<Weights<'a>, WeightsError> {
+///     let mut weights = Weights::parse(words)?;
+///     weights.features = FeatureSet::Raw;
+///     Ok(weights)
+/// }
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Weights<'a> {
-    /// What the network is told.
-    pub features: FeatureSet,
-    /// Whose commands it gives.
-    pub perspective: Perspective,
-    /// The network.
-    pub network: Mlp<'a>,
+    features: FeatureSet,
+    perspective: Perspective,
+    network: Mlp<'a>,
     provenance: &'a [u32; 8],
     centres: &'a [u32],
     scales: &'a [u32],
@@ -64,6 +80,7 @@ pub struct Weights<'a> {
 
 /// Why words are not a weights file, or a draft cannot become one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum WeightsError {
     /// It does not begin with the letters `CEDE`.
     Magic,
@@ -97,40 +114,22 @@ impl core::fmt::Display for WeightsError {
 impl core::error::Error for WeightsError {}
 
 impl<'a> Weights<'a> {
-    /// Checks `words` and borrows from them.
-    ///
-    /// Cost: O(words), most of it the checksum.
-    ///
-    /// # Errors
-    /// See [`WeightsError`]; a single flipped bit anywhere is always found.
-    pub fn parse(words: &'a [u32]) -> Result<Self, WeightsError> {
-        if words.first() != Some(&MAGIC) {
-            return Err(WeightsError::Magic);
-        }
-        let (&checksum, content) = words.split_last().ok_or(WeightsError::Shape)?;
-        if crc32(content) != checksum {
-            return Err(WeightsError::Checksum);
-        }
-        let (header, rest) = content.split_first_chunk().ok_or(WeightsError::Shape)?;
-        let header = Header::parse(header)?;
-        let shape = body(rest, header.features.count(), header.width);
-        let (parameters, centres, scales) = shape.ok_or(WeightsError::Shape)?;
-        let network = Mlp::new(parameters, header.features.count(), header.width)
-            .ok_or(WeightsError::Shape)?;
-        if !(in_range(parameters, MAX_WEIGHT)
-            && in_range(centres, MAX_NORMALISATION)
-            && in_range(scales, MAX_NORMALISATION))
-        {
-            return Err(WeightsError::OutOfRange);
-        }
-        Ok(Self {
-            features: header.features,
-            perspective: header.perspective,
-            provenance: header.provenance,
-            network,
-            centres,
-            scales,
-        })
+    /// What the network is told.
+    #[must_use]
+    pub const fn features(&self) -> FeatureSet {
+        self.features
+    }
+
+    /// Whose commands it gives.
+    #[must_use]
+    pub const fn perspective(&self) -> Perspective {
+        self.perspective
+    }
+
+    /// The network.
+    #[must_use]
+    pub const fn network(&self) -> &Mlp<'a> {
+        &self.network
     }
 
     /// SHA-256 of what the network was made from.
@@ -155,178 +154,6 @@ impl<'a> Weights<'a> {
     }
 }
 
-/// What a weights file is made from.
-#[derive(Clone, Copy, Debug)]
-pub struct Draft<'a> {
-    /// What the network is told; it says how many inputs there are.
-    pub features: FeatureSet,
-    /// Whose commands it gives.
-    pub perspective: Perspective,
-    /// Width of the hidden layers: a multiple of 16 up to 128.
-    pub width: usize,
-    /// SHA-256 of what the network was made from.
-    pub provenance: [u8; 32],
-    /// Centre of each feature.
-    pub centres: &'a [f32],
-    /// Scale of each feature.
-    pub scales: &'a [f32],
-    /// Layer by layer the biases, then the weights of input 0 for each neuron, then those of input 1, …
-    pub parameters: &'a [f32],
-}
-
-impl Draft<'_> {
-    /// Number of words of the file, which [`Draft::encode`] writes.
-    #[must_use]
-    pub const fn words(&self) -> usize {
-        let inputs = self.features.count();
-        HEADER + 2 * inputs + Mlp::words(inputs, self.width) + 1
-    }
-
-    /// Writes the file to the first [`Draft::words`] places of `out` and reads it back.
-    ///
-    ///
-    /// # Errors
-    /// [`WeightsError::NoRoom`] if `out` is too short, [`WeightsError::Shape`] and
-    /// [`WeightsError::OutOfRange`] if the draft is not a valid network.
-    pub fn encode<'o>(&self, out: &'o mut [u32]) -> Result<Weights<'o>, WeightsError> {
-        if self.width > MAX_WIDTH {
-            return Err(WeightsError::Shape);
-        }
-        let out = out.get_mut(..self.words()).ok_or(WeightsError::NoRoom)?;
-        let floats = [self.parameters, self.centres, self.scales];
-        let length = HEADER + floats.iter().map(|f| f.len()).sum::<usize>() + 1;
-        let features = FeatureSet::ALL.iter().position(|&f| f == self.features);
-        let (Some(features), true) = (features, length == out.len()) else {
-            return Err(WeightsError::Shape);
-        };
-        let head = [
-            MAGIC,
-            VERSION,
-            size(features),
-            self.perspective as u32,
-            size(self.features.count()),
-            size(self.width),
-            size(OUTPUTS),
-        ];
-        let header = head.into_iter().chain(words(&self.provenance)).chain([0]);
-        for (place, word) in out.iter_mut().zip(header) {
-            *place = word;
-        }
-        let inputs = self.features.count();
-        let places = Mlp::places(inputs, self.width).chain(Mlp::words(inputs, self.width)..);
-        for (place, value) in places.zip(floats.into_iter().flatten()) {
-            out[HEADER + place] = value.to_bits();
-        }
-        if let Some((last, content)) = out.split_last_mut() {
-            *last = crc32(content);
-        }
-        Weights::parse(out)
-    }
-}
-
-/// The words of a file read as bytes. A length that is no multiple of four gives one word more than
-/// it should, so that [`Weights::parse`] refuses it.
-pub fn words(bytes: &[u8]) -> impl Iterator<Item = u32> + '_ {
-    bytes.chunks(4).map(|chunk| {
-        let mut word = [0; 4];
-        for (place, &byte) in word.iter_mut().zip(chunk) {
-            *place = byte;
-        }
-        u32::from_le_bytes(word)
-    })
-}
-
-/// Words on a boundary of 64 bytes, a cache line: where a network runs fastest.
-#[repr(C, align(64))]
-pub struct Aligned<const N: usize>(pub [u32; N]);
-
-impl<const N: usize> Aligned<N> {
-    /// The words of a file at compile time; see [`include_weights!`](crate::include_weights).
-    ///
-    /// # Panics
-    /// If `bytes` is not `4 · N` long: at compile time, when it makes a constant or a static.
-    #[must_use]
-    pub const fn new(bytes: &[u8]) -> Self {
-        let (chunks, rest) = bytes.as_chunks::<4>();
-        assert!(
-            chunks.len() == N && rest.is_empty(),
-            "not a whole number of words"
-        );
-        let mut words = [0; N];
-        let mut i = 0;
-        while i < N {
-            words[i] = u32::from_le_bytes(chunks[i]);
-            i += 1;
-        }
-        Self(words)
-    }
-}
-
-/// A weights file as a `&'static [u32]` in read-only memory, for [`Weights::parse`].
-///
-/// The path is relative to the source file, as in `include_bytes!`.
-#[macro_export]
-macro_rules! include_weights {
-    ($path:expr) => {{
-        const BYTES: &[u8] = include_bytes!($path);
-        static WORDS: $crate::policy::weights::Aligned<{ BYTES.len() / 4 }> =
-            $crate::policy::weights::Aligned::new(BYTES);
-        &WORDS.0 as &'static [u32]
-    }};
-}
-
-struct Header<'a> {
-    features: FeatureSet,
-    perspective: Perspective,
-    width: usize,
-    provenance: &'a [u32; 8],
-}
-
-impl<'a> Header<'a> {
-    fn parse(words: &'a [u32; HEADER]) -> Result<Self, WeightsError> {
-        let [
-            _,
-            version,
-            features,
-            perspective,
-            inputs,
-            width,
-            outputs,
-            provenance @ ..,
-            reserved,
-        ] = words;
-        let width = usize::try_from(*width).unwrap_or(usize::MAX);
-        if *version != VERSION || *reserved != 0 {
-            return Err(WeightsError::Unknown);
-        }
-        let header = Self {
-            features: feature_set(*features).ok_or(WeightsError::Unknown)?,
-            perspective: perspective_of(*perspective).ok_or(WeightsError::Unknown)?,
-            width,
-            provenance,
-        };
-        let known = size(header.features.count()) == *inputs && size(OUTPUTS) == *outputs;
-        if known && width <= MAX_WIDTH {
-            Ok(header)
-        } else {
-            Err(WeightsError::Shape)
-        }
-    }
-}
-
-/// What follows the header: parameters, centres, scales.
-fn body(words: &[u32], inputs: usize, width: usize) -> Option<(&[u32], &[u32], &[u32])> {
-    let (parameters, rest) = words.split_at_checked(Mlp::words(inputs, width))?;
-    let (centres, scales) = rest.split_at_checked(inputs)?;
-    (scales.len() == inputs).then_some((parameters, centres, scales))
-}
-
-fn in_range(words: &[u32], limit: f32) -> bool {
-    words
-        .iter()
-        .all(|&word| f32::from_bits(word).abs() <= limit)
-}
-
 fn crc32(words: &[u32]) -> u32 {
     let mut digest = CRC.digest();
     for byte in words.iter().flat_map(|word| word.to_le_bytes()) {
@@ -337,16 +164,6 @@ fn crc32(words: &[u32]) -> u32 {
 
 fn size(n: usize) -> u32 {
     u32::try_from(n).unwrap_or(u32::MAX)
-}
-
-fn feature_set(code: u32) -> Option<FeatureSet> {
-    FeatureSet::ALL.get(usize::try_from(code).ok()?).copied()
-}
-
-fn perspective_of(code: u32) -> Option<Perspective> {
-    [Perspective::Joint, Perspective::Ego]
-        .into_iter()
-        .find(|&p| p as u32 == code)
 }
 
 #[cfg(test)]
@@ -389,6 +206,7 @@ mod tests {
     extern crate std;
     use super::testing::{file, noise};
     use super::*;
+    use crate::policy::mlp::MAX_WIDTH;
     use std::vec::Vec;
 
     #[test]
@@ -397,9 +215,9 @@ mod tests {
             for perspective in [Perspective::Joint, Perspective::Ego] {
                 let file = file(features, perspective, 32);
                 let weights = Weights::parse(&file).unwrap();
-                assert_eq!(weights.features, features);
-                assert_eq!(weights.perspective, perspective);
-                assert_eq!(weights.network.width(), 32);
+                assert_eq!(weights.features(), features);
+                assert_eq!(weights.perspective(), perspective);
+                assert_eq!(weights.network().width(), 32);
                 assert_eq!(weights.provenance()[31], 31);
                 assert!(weights.normalisation().all(|n| n == (1.0, 0.1)));
                 assert_eq!(weights.normalisation().count(), features.count());
@@ -411,7 +229,7 @@ mod tests {
     fn every_parameter_is_read_back_in_order() {
         for width in (16..=MAX_WIDTH).step_by(16) {
             let file = file(FeatureSet::Raw, Perspective::Ego, width);
-            let layers = Weights::parse(&file).unwrap().network.layers();
+            let layers = Weights::parse(&file).unwrap().network().layers();
             let read = layers.iter().flat_map(|l| l.biases().chain(l.weights()));
             let written = noise(7).map(|w| 0.4 * w).take(Mlp::words(8, width));
             assert!(read.eq(written), "{width} wide");

@@ -1,0 +1,77 @@
+//! The occupied polygons that hang together become one zone.
+
+use super::{FAR, MAX_ZONES, Span, Zone};
+use crate::junction::conflict::ConflictKind;
+
+/// Vehicles that touch while they point the same way share a lane if they do so over this distance (m).
+const LANE: f32 = 2.0;
+
+/// A part of the occupied set, on the way to a [`Zone`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Patch {
+    pub(super) ego: Span,
+    pub(super) other: Span,
+    pub(super) lead: Span,
+    /// Arc lengths of the ego at which it touches the other while both point the same way.
+    pub(super) parallel: Option<Span>,
+    /// They do so where a route starts.
+    pub(super) starts: bool,
+    /// They do so where a route ends.
+    pub(super) ends: bool,
+}
+
+impl Patch {
+    fn touches(&self, other: &Self) -> bool {
+        self.ego.touches(other.ego) && self.other.touches(other.other)
+    }
+
+    fn absorb(&mut self, other: &Self) {
+        self.ego = self.ego.hull(other.ego);
+        self.other = self.other.hull(other.other);
+        self.lead = self.lead.hull(other.lead);
+        self.parallel = match (self.parallel, other.parallel) {
+            (Some(a), Some(b)) => Some(a.hull(b)),
+            (a, b) => a.or(b),
+        };
+        self.starts |= other.starts;
+        self.ends |= other.ends;
+    }
+
+    pub(super) fn zone(&self) -> Zone {
+        let lane = self.parallel.is_some_and(|p| p.to - p.from >= LANE);
+        // A shared lane goes on past the end of the shorter route, for both.
+        let end = |interval: Span| Span {
+            to: if lane && self.ends { FAR } else { interval.to },
+            ..interval
+        };
+        Zone {
+            ego: end(self.ego),
+            other: end(self.other),
+            lead: self.lead,
+            kind: match (lane, self.starts) {
+                (true, true) => ConflictKind::Following,
+                (true, false) => ConflictKind::Merging,
+                (false, _) => ConflictKind::Crossing,
+            },
+        }
+    }
+}
+
+/// Adds a patch, or widens those that it touches: what hangs together ends up in one.
+pub(super) fn insert(patches: &mut [Option<Patch>; MAX_ZONES], mut patch: Patch) {
+    let touched = |patches: &mut [Option<Patch>], patch: &Patch| {
+        patches
+            .iter_mut()
+            .find(|slot| slot.is_some_and(|met| met.touches(patch)))
+            .and_then(Option::take)
+    };
+    // Each round empties a slot. The wider patch may touch one that was passed over.
+    while let Some(met) = touched(patches, &patch) {
+        patch.absorb(&met);
+    }
+    if let Some(slot) = patches.iter_mut().find(|slot| slot.is_none()) {
+        *slot = Some(patch);
+    } else if let Some(last) = patches.last_mut().and_then(Option::as_mut) {
+        last.absorb(&patch);
+    }
+}

@@ -1,0 +1,169 @@
+//! What is demanded of each number of a contract.
+
+use super::{Contract, Precedence};
+
+/// The first number of a [`Contract`] that is out of its range. Prints as `ego.braking = 9 is outside (0, 8]`, with
+/// a reason where the range depends on other numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContractError {
+    field: &'static str,
+    value: f32,
+    range: Range,
+    why: &'static str,
+}
+
+impl ContractError {
+    /// Path of the field in [`Contract`], as in `ego.braking`.
+    #[must_use]
+    pub const fn field(&self) -> &'static str {
+        self.field
+    }
+
+    /// The value that it has.
+    #[must_use]
+    pub const fn value(&self) -> f32 {
+        self.value
+    }
+}
+
+impl core::fmt::Display for ContractError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let Range { open, low, high } = self.range;
+        let bracket = if open { '(' } else { '[' };
+        let Self {
+            field, value, why, ..
+        } = self;
+        write!(
+            f,
+            "{field} = {value} is outside {bracket}{low}, {high}]{why}"
+        )
+    }
+}
+
+impl core::error::Error for ContractError {}
+
+/// From `low` to `high`, without `low` where it is `open`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Range {
+    open: bool,
+    low: f32,
+    high: f32,
+}
+
+/// `(low, high]`.
+const fn above(low: f32, high: f32) -> Range {
+    let open = true;
+    Range { open, low, high }
+}
+
+/// `[low, high]`.
+const fn from(low: f32, high: f32) -> Range {
+    let open = false;
+    Range { open, low, high }
+}
+
+/// A number of a contract, its range, and what the range comes from where it depends on other numbers.
+type Demand = (&'static str, f32, Range, &'static str);
+
+/// The first number that is out of its range. NaN is in none.
+pub(super) const fn first_fault(contract: &Contract) -> Option<ContractError> {
+    if let Some(error) = first(&everywhere(contract)) {
+        return Some(error);
+    }
+    let Some(rule) = contract.precedence else {
+        return None;
+    };
+    match (first(&of_precedence(rule)), rule.patience) {
+        (Some(error), _) => Some(error),
+        (None, 0) => None,
+        (None, _) => match first(&of_turns(contract, rule)) {
+            Some(error) => Some(error),
+            None => unseen(contract),
+        },
+    }
+}
+
+const fn first(demands: &[Demand]) -> Option<ContractError> {
+    let mut rest = demands;
+    while let [(field, value, range, why), others @ ..] = rest {
+        let low = *value > range.low || (*value == range.low && !range.open);
+        if !(low && *value <= range.high) {
+            return Some(ContractError {
+                field,
+                value: *value,
+                range: *range,
+                why,
+            });
+        }
+        rest = others;
+    }
+    None
+}
+
+const fn everywhere(contract: &Contract) -> [Demand; 14] {
+    let (ego, other, follower) = (contract.ego, contract.other, contract.follower);
+    let late = ": a command takes effect before the next one";
+    let commanded = ": it goes no harder than ego.acceleration, the hardest that is commanded";
+    // The gap to a leader is smallest at the end only if the leader can brake harder.
+    let leader = ": it brakes no harder than other.braking, the hardest braking of a vehicle ahead";
+    let hardest = ": it brakes no harder than other.braking, the hardest of all the others";
+    let (tolerance, reaction) = (from(0.0, 10.0), from(0.0, 10.0));
+    let (speed, acceleration) = (above(0.0, 100.0), above(0.0, 20.0));
+    let (go, braking) = (above(0.0, ego.acceleration), above(0.0, other.braking));
+    [
+        ("period", contract.period, above(0.0, 1.0), ""),
+        (
+            "latency",
+            contract.latency,
+            from(0.0, contract.period),
+            late,
+        ),
+        ("position_error", contract.position_error, tolerance, ""),
+        ("speed_error", contract.speed_error, tolerance, ""),
+        ("slack", contract.slack, tolerance, ""),
+        ("other.max_speed", other.max_speed, speed, ""),
+        ("other.acceleration", other.acceleration, acceleration, ""),
+        ("other.braking", other.braking, acceleration, ""),
+        ("ego.max_speed", ego.max_speed, speed, ""),
+        ("ego.acceleration", ego.acceleration, acceleration, ""),
+        ("ego.go", ego.go, go, commanded),
+        ("ego.braking", ego.braking, braking, leader),
+        ("follower.reaction", follower.reaction, reaction, ""),
+        ("follower.braking", follower.braking, braking, hardest),
+    ]
+}
+
+const fn of_precedence(rule: Precedence) -> [Demand; 2] {
+    [
+        ("precedence.distance", rule.distance, above(0.0, 200.0), ""),
+        ("precedence.braking", rule.braking, above(0.0, 20.0), ""),
+    ]
+}
+
+const fn of_turns(contract: &Contract, rule: Precedence) -> [Demand; 2] {
+    let turns = "; 0 leaves out the turns";
+    let patience = from(5.0, u16::MAX as f32);
+    // A vehicle whose turn is past stops where the other expects it.
+    let stops =
+        ": who takes turns stops as hard as it is expected to, and has ego.braking to do so";
+    let braking = above(0.0, contract.ego.braking);
+    [
+        ("precedence.patience", rule.patience as f32, patience, turns),
+        ("precedence.braking", rule.braking, braking, stops),
+    ]
+}
+
+/// One that goes is seen: it gets faster, in spite of its limiter, than one that may be taken for one at rest.
+const fn unseen(contract: &Contract) -> Option<ContractError> {
+    let (speed, error) = (contract.ego.max_speed, contract.speed_error);
+    let rest = contract.rest_speed() + 2.0 * error;
+    if rest < speed - error {
+        return None;
+    }
+    Some(ContractError {
+        field: "ego.max_speed",
+        value: speed,
+        range: above(rest + error, 100.0),
+        why: ": who takes turns must be seen to go, in spite of speed_error",
+    })
+}

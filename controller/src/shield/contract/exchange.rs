@@ -1,0 +1,62 @@
+//! A contract from a file: as valid as one that is built.
+
+use super::{Contract, ContractBuilder, ContractError, Ego, Follower, Other, Precedence};
+use serde::Deserialize;
+
+/// The numbers as they are read, not yet validated.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Numbers {
+    period: f32,
+    latency: f32,
+    position_error: f32,
+    speed_error: f32,
+    slack: f32,
+    ego: Ego,
+    other: Other,
+    follower: Follower,
+    #[serde(default)]
+    precedence: Option<Precedence>,
+}
+
+impl TryFrom<Numbers> for Contract {
+    type Error = ContractError;
+
+    fn try_from(read: Numbers) -> Result<Self, ContractError> {
+        ContractBuilder::new(Self {
+            period: read.period,
+            latency: read.latency,
+            position_error: read.position_error,
+            speed_error: read.speed_error,
+            slack: read.slack,
+            ego: read.ego,
+            other: read.other,
+            follower: read.follower,
+            precedence: read.precedence,
+        })
+        .build()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_contract_is_read_back_and_a_wrong_one_is_refused() {
+        for contract in [Contract::WORST_CASE, Contract::ALL_WAY_STOP] {
+            let written = serde_json::to_string(&contract).unwrap();
+            assert_eq!(
+                serde_json::from_str::<Contract>(&written).unwrap(),
+                contract
+            );
+            let wrong = written.replace("\"latency\":0.1", "\"latency\":0.2");
+            let error = serde_json::from_str::<Contract>(&wrong).unwrap_err();
+            let text = std::string::ToString::to_string(&error);
+            assert!(
+                text.starts_with("latency = 0.2 is outside [0, 0.1]"),
+                "{text}"
+            );
+        }
+    }
+}

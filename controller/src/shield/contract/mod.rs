@@ -1,0 +1,326 @@
+//! What the shield assumes of the world, in numbers.
+
+mod builder;
+mod demand;
+#[cfg(feature = "serde")]
+mod exchange;
+
+pub use builder::ContractBuilder;
+pub use demand::ContractError;
+
+/// The assumptions under which the shield's guarantee holds.
+///
+/// Guarantee: the ego is never in a conflict zone together with another vehicle, and never
+/// hits a vehicle ahead of it in its lane. `docs/theorem.md` has the proof.
+///
+/// A contract that exists is valid: there are the named ones, and those that [`ContractBuilder::build`]
+/// has checked.
+///
+/// ```
+/// use cede_controller::Contract;
+///
+/// let mine = Contract::builder().ego_braking(4.0).latency(0.05).build()?;
+/// assert_eq!(mine.ego().braking, 4.0);
+///
+/// let error = Contract::builder().ego_braking(9.0).build().unwrap_err();
+/// assert!(error.to_string().starts_with("ego.braking = 9 is outside (0, 8]"));
+/// # Ok::<(), cede_controller::ContractError>(())
+/// ```
+///
+/// Nothing can be changed afterwards; [`Contract::to_builder`] begins another one.
+///
+/// ```compile_fail,E0616
+/// let mut contract = cede_controller::Contract::WORST_CASE;
+/// contract.latency = 9.0;
+/// ```
+///
+/// Where it enters a lane ahead of another, the ego's acceleration must not exceed the others', nor the larger of its
+/// own braking and the follower's, and its speed must not exceed theirs, as in the named contracts.
+/// [`ContractBuilder::build`] does not refuse it (duty U7 of `docs/manual.md`).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "exchange::Numbers"))]
+pub struct Contract {
+    pub(super) period: f32,
+    pub(super) latency: f32,
+    pub(super) position_error: f32,
+    pub(super) speed_error: f32,
+    pub(super) slack: f32,
+    pub(super) ego: Ego,
+    pub(super) other: Other,
+    pub(super) follower: Follower,
+    pub(super) precedence: Option<Precedence>,
+}
+
+/// What the ego can do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+#[non_exhaustive]
+pub struct Ego {
+    /// No proposal accelerates the ego at or above this speed, in m/s, in (0, 100]; a plan that is carried out may.
+    /// A limiter may keep the vehicle from going faster, and errs by `speed_error` at most. The guarantee holds with
+    /// a limiter and without one.
+    pub max_speed: f32,
+    /// Largest acceleration that is commanded, in m/s², in (0, 20].
+    pub acceleration: f32,
+    /// Acceleration that it achieves, below its limiter's speed, when it must clear a zone, in m/s², in (0, `acceleration`].
+    pub go: f32,
+    /// Braking that it achieves, and the hardest that is commanded, in m/s², in (0, the others' `braking`].
+    pub braking: f32,
+}
+
+/// What another vehicle can do, at most. It follows its route forwards.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+#[non_exhaustive]
+pub struct Other {
+    /// Highest speed in m/s, in (0, 100]. A vehicle seen above it keeps that speed at most.
+    pub max_speed: f32,
+    /// Hardest acceleration in m/s², in (0, 20].
+    pub acceleration: f32,
+    /// Hardest braking in m/s², in (0, 20].
+    pub braking: f32,
+}
+
+/// What a vehicle does that finds the ego ahead of it in its lane: after `reaction` it brakes at
+/// `braking` or harder for as long as it must, if that is enough to stop behind the ego
+/// (responsibility-sensitive safety; Shalev-Shwartz, Shammah and Shashua, arXiv:1708.06374).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+#[non_exhaustive]
+pub struct Follower {
+    /// Reaction time in s, in [0, 10].
+    pub reaction: f32,
+    /// Braking in m/s², in (0, the other's hardest `braking`].
+    pub braking: f32,
+}
+
+/// Who arrived first goes first; in a tie, who has the right of way.
+///
+/// A vehicle arrives when it comes within `distance` of its zone with the other. The one with
+/// precedence assumes that the other stays out of the zone if it can still stop before it. Whoever stands in a zone
+/// has precedence there; nobody waits in one for somebody without the right of way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+#[non_exhaustive]
+pub struct Precedence {
+    /// Metres before the zone at which a vehicle has arrived, in (0, 200].
+    pub distance: f32,
+    /// Arrivals within this many periods of each other are a tie. If the one without the right of way
+    /// came one period more before the other, nobody has precedence: the two may count differently.
+    pub tie: u16,
+    /// Braking in m/s², in (0, 20], with which the other is expected to stop; with `patience`, at most the ego's.
+    pub braking: f32,
+    /// Periods for which a vehicle with precedence may rest, while the other rests as well, before precedence
+    /// goes to the other, and after twice, four times … as many back and forth; at least 5, or 0 if it is
+    /// never lost. The first few periods of a turn are nobody's, so that 10 or more is useful.
+    pub patience: u16,
+}
+
+impl Precedence {
+    /// An all-way stop: 12 m, half a second, 3 m/s², and turns of 1.5 s, 3 s, 6 s, …
+    pub const ALL_WAY_STOP: Self = Self {
+        distance: 12.0,
+        tie: 5,
+        braking: 3.0,
+        patience: 15,
+    };
+}
+
+impl Contract {
+    /// The worst case: others accelerate at 3 m/s² up to 15 m/s and may brake at 8; a command takes
+    /// effect one period late; at crossings nobody is courteous. Sensors are exact.
+    pub const WORST_CASE: Self = Self {
+        period: 0.1,
+        latency: 0.1,
+        position_error: 0.0,
+        speed_error: 0.0,
+        slack: 0.01,
+        ego: Ego {
+            max_speed: 15.0,
+            acceleration: 3.0,
+            go: 3.0,
+            braking: 3.0,
+        },
+        other: Other {
+            max_speed: 15.0,
+            acceleration: 3.0,
+            braking: 8.0,
+        },
+        follower: Follower {
+            reaction: 0.5,
+            braking: 4.0,
+        },
+        precedence: None,
+    };
+
+    /// [`Contract::WORST_CASE`] among vehicles that keep the rule of precedence of an all-way stop.
+    pub const ALL_WAY_STOP: Self = Self {
+        precedence: Some(Precedence::ALL_WAY_STOP),
+        ..Self::WORST_CASE
+    };
+
+    /// A builder that starts from [`Contract::WORST_CASE`].
+    #[must_use]
+    pub const fn builder() -> ContractBuilder {
+        Self::WORST_CASE.to_builder()
+    }
+
+    /// A builder that starts from these numbers.
+    #[must_use]
+    pub const fn to_builder(self) -> ContractBuilder {
+        ContractBuilder::new(self)
+    }
+
+    /// Time from one decision to the next in s, in (0, 1].
+    #[must_use]
+    pub const fn period(&self) -> f32 {
+        self.period
+    }
+
+    /// A command takes effect within this time in s, in [0, `period`]; until then the one before it does.
+    #[must_use]
+    pub const fn latency(&self) -> f32 {
+        self.latency
+    }
+
+    /// Largest error of a sensed arc length in m, the ego's or another's, in [0, 10].
+    #[must_use]
+    pub const fn position_error(&self) -> f32 {
+        self.position_error
+    }
+
+    /// Largest error of a sensed speed in m/s, in [0, 10].
+    #[must_use]
+    pub const fn speed_error(&self) -> f32 {
+        self.speed_error
+    }
+
+    /// Subtracted from every margin, in m, in [0, 10]: covers the rounding of `f32`.
+    #[must_use]
+    pub const fn slack(&self) -> f32 {
+        self.slack
+    }
+
+    /// What the ego can do.
+    #[must_use]
+    pub const fn ego(&self) -> Ego {
+        self.ego
+    }
+
+    /// What every other vehicle can do, at most.
+    #[must_use]
+    pub const fn other(&self) -> Other {
+        self.other
+    }
+
+    /// What a vehicle does that finds the ego ahead of it in its lane.
+    #[must_use]
+    pub const fn follower(&self) -> Follower {
+        self.follower
+    }
+
+    /// The rule of precedence that the others keep, if they do: without it nobody's courtesy is
+    /// assumed where routes cross.
+    #[must_use]
+    pub const fn precedence(&self) -> Option<Precedence> {
+        self.precedence
+    }
+
+    /// The speed (m/s) up to which a vehicle counts as one at rest: a quarter of what `go` gives in a period.
+    pub(super) const fn rest_speed(&self) -> f32 {
+        0.25 * self.ego.go * self.period
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_named_contracts_are_in_range() {
+        for contract in [Contract::WORST_CASE, Contract::ALL_WAY_STOP] {
+            assert_eq!(contract.to_builder().build(), Ok(contract));
+        }
+    }
+
+    /// What is said of the worst case, or of the all-way stop, after `change`.
+    fn said(contract: Contract, change: impl FnOnce(&mut Contract)) -> std::string::String {
+        let mut changed = contract;
+        change(&mut changed);
+        std::string::ToString::to_string(&changed.to_builder().build().unwrap_err())
+    }
+
+    #[test]
+    fn numbers_out_of_range_are_named_with_value_and_range() {
+        let worst = |change: fn(&mut Contract)| said(Contract::WORST_CASE, change);
+        let begins = |text: std::string::String, beginning: &str| {
+            assert!(text.starts_with(beginning), "{text}");
+        };
+        begins(worst(|c| c.period = 0.0), "period = 0 is outside (0, 1]");
+        begins(
+            worst(|c| c.latency = 0.2),
+            "latency = 0.2 is outside [0, 0.1]: ",
+        );
+        begins(
+            worst(|c| c.position_error = -1.0),
+            "position_error = -1 is outside [0, 10]",
+        );
+        begins(worst(|c| c.slack = 11.0), "slack = 11 is outside [0, 10]");
+        begins(
+            worst(|c| c.ego.braking = 9.0),
+            "ego.braking = 9 is outside (0, 8]: ",
+        );
+        begins(
+            worst(|c| c.ego.go = f32::NAN),
+            "ego.go = NaN is outside (0, 3]: ",
+        );
+        begins(
+            worst(|c| c.other.braking = 21.0),
+            "other.braking = 21 is outside (0, 20]",
+        );
+        begins(
+            worst(|c| c.follower.braking = 8.5),
+            "follower.braking = 8.5 is outside (0, 8]: ",
+        );
+    }
+
+    #[test]
+    fn numbers_of_the_rule_of_precedence_are_named() {
+        let stop = |change: fn(&mut Contract, &mut Precedence)| {
+            said(Contract::ALL_WAY_STOP, |contract| {
+                let mut rule = Precedence::ALL_WAY_STOP;
+                change(contract, &mut rule);
+                contract.precedence = Some(rule);
+            })
+        };
+        let begins = |text: std::string::String, beginning: &str| {
+            assert!(text.starts_with(beginning), "{text}");
+        };
+        begins(
+            stop(|_, rule| rule.distance = 0.0),
+            "precedence.distance = 0 is outside (0, 200]",
+        );
+        begins(
+            stop(|_, rule| rule.patience = 4),
+            "precedence.patience = 4 is outside [5, 65535]; 0 ",
+        );
+        begins(
+            stop(|_, rule| rule.braking = 3.5),
+            "precedence.braking = 3.5 is outside (0, 3]: ",
+        );
+        begins(
+            stop(|contract, _| contract.speed_error = 6.0),
+            "ego.max_speed = 15 is outside (18.075, 100]: ",
+        );
+    }
+}
