@@ -20,7 +20,6 @@
 //! ```
 
 mod block;
-mod lanes;
 mod library;
 mod motion;
 

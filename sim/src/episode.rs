@@ -1,10 +1,12 @@
 //! One episode: drivers take over the two judged vehicles from their recorded initial states.
 
 use crate::driver::{Driver, View};
-use cede_controller::kinematics::{State, advance, clamp_acceleration};
-use cede_controller::separation::OrientedBox;
-use cede_controller::{Cause, Footprint};
+use crate::stepper::{Stepper, first};
+use cede_controller::Cause;
+use cede_controller::kinematics::{State, clamp_acceleration};
 use cede_data::encounter::{Encounter, Role};
+
+pub use crate::stepper::End;
 
 /// When an episode is over, if neither a collision nor a time-out ends it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -13,17 +15,6 @@ pub enum Until {
     Conflict,
     /// When both have left the conflict zone: catches the collisions that the paper's protocol cannot.
     Cleared,
-}
-
-/// How an episode ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum End {
-    /// As it should: see [`Until`].
-    Finished,
-    /// The two footprints touched.
-    Collision,
-    /// Not finished in time: a face-off.
-    TimeOut,
 }
 
 /// What happened in an episode, step by step.
@@ -70,35 +61,29 @@ impl Episode {
         drivers: &mut [Box<dyn Driver>; 2],
         clearance: Option<[f32; 2]>,
     ) -> Self {
-        let limit = time_limit(encounter, clearance);
-        let mut episode = Self::begin(encounter);
-        let mut world = World::new(encounter);
-        for step in 0..limit {
-            world.replay_bystanders(step);
-            let actions = world.decide(step, drivers);
-            let end = episode.step(encounter, actions, clearance);
-            if let Some(end) = end {
-                episode.end = end;
-                break;
-            }
-            world.place(episode.last());
-        }
-        episode
-    }
-
-    fn begin(encounter: &Encounter) -> Self {
-        let start = Role::BOTH.map(|role| {
-            let first = encounter.judged(role).record.first();
-            first.map_or_else(State::default, |sample| State {
-                s: sample.s,
-                v: sample.v,
-            })
-        });
-        Self {
+        let stepper = Stepper::new(encounter, clearance);
+        let mut world = World::new(encounter, stepper.start());
+        let mut episode = Self {
             end: End::TimeOut,
             arrivals: [None; 2],
-            states: vec![start],
+            states: vec![stepper.start()],
             actions: Vec::new(),
+        };
+        loop {
+            world.replay_bystanders(episode.steps());
+            let actions = world.decide(episode.steps(), drivers);
+            let accelerations = actions.map(|action| action.acceleration);
+            let step = stepper.step(episode.actions.len(), episode.last(), accelerations);
+            for (known, new) in episode.arrivals.iter_mut().zip(step.arrivals()) {
+                *known = known.or(new);
+            }
+            episode.actions.push(actions);
+            episode.states.push(step.states);
+            if let Some(end) = step.end() {
+                episode.end = end;
+                return episode;
+            }
+            world.place(step.states);
         }
     }
 
@@ -111,68 +96,12 @@ impl Episode {
     /// Who reached its conflict point first; `None` if nobody did.
     #[must_use]
     pub fn first(&self) -> Option<Role> {
-        match self.arrivals {
-            [None, None] => None,
-            [Some(left), Some(other)] if other < left => Some(Role::Other),
-            [Some(_), _] => Some(Role::Left),
-            [None, Some(_)] => Some(Role::Other),
-        }
+        first(self.arrivals)
     }
 
     fn last(&self) -> [State; 2] {
         self.states[self.states.len() - 1]
     }
-
-    /// Moves both by one step, and says whether that was the last.
-    fn step(
-        &mut self,
-        encounter: &Encounter,
-        actions: [Action; 2],
-        clearance: Option<[f32; 2]>,
-    ) -> Option<End> {
-        let before = self.last();
-        let after = [0, 1].map(|i| advance(before[i], actions[i].acceleration));
-        for role in Role::BOTH {
-            let i = role as usize;
-            let goal = encounter.judged(role).conflict_s;
-            if self.arrivals[i].is_none() && after[i].s >= goal {
-                let covered = (goal - before[i].s) / (after[i].s - before[i].s).max(f32::EPSILON);
-                self.arrivals[i] = Some(self.steps() as f32 + covered.clamp(0.0, 1.0));
-            }
-        }
-        self.actions.push(actions);
-        self.states.push(after);
-        let finished = match clearance {
-            None => self.arrivals.iter().any(Option::is_some),
-            Some(exits) => (0..2).all(|i| after[i].s >= exits[i]),
-        };
-        if collide(encounter, after) {
-            Some(End::Collision)
-        } else {
-            finished.then_some(End::Finished)
-        }
-    }
-}
-
-/// Whether the two judged vehicles touch.
-fn collide(encounter: &Encounter, states: [State; 2]) -> bool {
-    let [left, other] = Role::BOTH.map(|role| {
-        let pose = encounter.judged(role).route.pose(states[role as usize].s);
-        OrientedBox::new(pose, Footprint::PAPER)
-    });
-    left.overlaps(&other)
-}
-
-/// Steps after which an episode is a time-out: twice what was recorded.
-fn time_limit(encounter: &Encounter, clearance: Option<[f32; 2]>) -> u32 {
-    let recorded = clearance.map_or(encounter.steps, |exits| {
-        let left_zone = Role::BOTH.map(|role| {
-            let record = &encounter.judged(role).record;
-            record.partition_point(|sample| sample.s < exits[role as usize])
-        });
-        encounter.steps.max(left_zone[0].max(left_zone[1]) as u32)
-    });
-    2 * recorded
 }
 
 /// The states of all participants while an episode runs.
@@ -182,12 +111,12 @@ struct World<'a> {
 }
 
 impl<'a> World<'a> {
-    fn new(encounter: &'a Encounter) -> Self {
+    fn new(encounter: &'a Encounter, judged: [State; 2]) -> Self {
         let mut world = Self {
             encounter,
             states: vec![None; encounter.participants.len()],
         };
-        world.place(Episode::begin(encounter).last());
+        world.place(judged);
         world
     }
 

@@ -13,6 +13,7 @@ pub mod metrics;
 pub mod observation_model;
 pub mod reward;
 pub mod statistics;
+pub mod stepper;
 pub mod transparency;
 
 pub use driver::{Driver, DriverFactory, View};

@@ -4,6 +4,8 @@
 //! episode's length, so they are added to every step of an episode once it has ended (the
 //! *episode-replay* reward).
 
+use cede_controller::Elementary;
+
 /// r₄: what a collision earns.
 pub const COLLISION: f32 = -10.0;
 /// r₁ of a step past the record's end, where there is nothing to compare with.
@@ -16,9 +18,8 @@ pub const SPEED_SCALE: f32 = 20.0;
 /// r₁ in [0, 1]: deviation of the SVO from the recorded one at the same step (both in rad).
 #[must_use]
 #[inline]
-pub fn svo_deviation(svo: f32, recorded: f32) -> f32 {
-    let deviation = (svo - recorded).abs() * (1.0 / SVO_SCALE);
-    if deviation < 1.0 { deviation } else { 1.0 }
+pub fn svo_deviation<R: Elementary>(svo: R, recorded: R) -> R {
+    R::of(1.0).min((svo - recorded).abs().scaled(1.0, SVO_SCALE))
 }
 
 /// Length of an episode that has ended, beside the recorded one.

@@ -6,13 +6,14 @@ use super::library::{Library, Scenario};
 use super::motion::Motion;
 use super::{LANES, Lanes};
 use crate::reward::EpisodeLength;
+use crate::stepper::{self, Eight, Goal};
+use cede_controller::kinematics::{State, clamp_acceleration};
 use cede_controller::policy::svo::svo;
 use cede_data::encounter::Role;
 use core::f32::consts::FRAC_PI_4;
 use core::ops::Range;
 use rand::RngExt;
 use rand_pcg::Pcg64;
-use wide::f32x8;
 
 /// How far an episode has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -62,15 +63,6 @@ pub struct Block<const N: usize> {
 struct Presence {
     from: Lanes,
     until: Lanes,
-}
-
-impl Presence {
-    /// All bits set in the lanes where the vehicle is there.
-    #[inline]
-    fn mask(&self, step: Lanes) -> f32x8 {
-        let step = f32x8::from(step);
-        step.simd_ge(f32x8::from(self.from)) & step.simd_lt(f32x8::from(self.until))
-    }
 }
 
 impl<const N: usize> Block<N> {
@@ -189,17 +181,55 @@ impl<const N: usize> Block<N> {
     /// Encounters that have ended must be restarted first ([`Block::restart`], [`Block::place`]).
     /// Never allocates. NaN is taken as full braking.
     pub fn advance(&mut self, library: &Library, accelerations: &[Lanes; N]) {
-        for (motion, asked) in self.vehicles.iter_mut().zip(accelerations) {
-            motion.advance(library, asked);
+        let goal = self.goal();
+        let taken = Eight::from(self.step);
+        let mut states = self.vehicles.each_ref().map(Motion::states);
+        let accelerations = accelerations.map(|asked| clamp_acceleration(Eight::from(asked)));
+        self.count();
+        let (judged, traffic) = states.split_at_mut(2);
+        stepper::advance(traffic, &accelerations[2..]);
+        let step = stepper::step(
+            &goal,
+            taken,
+            [judged[0], judged[1]],
+            [accelerations[0], accelerations[1]],
+            |judged| {
+                self.move_to(judged.iter().chain(traffic.iter()), library);
+                self.least_gap(library)
+            },
+        );
+        self.score(&step, library);
+    }
+
+    /// What ends the episodes: the paper's protocol.
+    #[inline]
+    fn goal(&self) -> Goal<Eight> {
+        let recorded = Eight::from(self.recorded);
+        Goal {
+            conflict_s: self.conflict_s.map(Eight::from),
+            exits: None,
+            limit: recorded + recorded,
         }
+    }
+
+    /// Counts a step.
+    #[inline]
+    fn count(&mut self) {
         for lane in 0..LANES {
             self.step[lane] += 1.0;
             self.reference[lane] += u32::from(self.step[lane] <= self.recorded[lane]);
         }
+    }
+
+    /// Takes all vehicles on to `states`.
+    #[inline]
+    fn move_to<'s>(&mut self, states: impl Iterator<Item = &'s State<Eight>>, library: &Library) {
+        for (motion, state) in self.vehicles.iter_mut().zip(states) {
+            motion.move_to(state, library);
+        }
         if N > 2 {
             self.traffic_appears(library);
         }
-        self.score(library);
     }
 
     /// Starts a new episode, of an encounter drawn at random, wherever one has ended.

@@ -1,11 +1,12 @@
 //! One vehicle of each encounter of a block: state, pose, and the segment of the route that it is on.
 
-use super::lanes::{Boxes, advance};
 use super::library::{Library, Track};
 use super::{LANES, Lanes};
+use crate::stepper::Eight;
+use cede_controller::Real;
 use cede_controller::kinematics::State;
-use cede_controller::{Point, Pose};
-use wide::f32x8;
+use cede_controller::separation::OrientedBox;
+use cede_controller::{Footprint, Point, Pose};
 
 /// One vehicle of each of the encounters that a block steps together; entry `i` of each array
 /// belongs to encounter `i`.
@@ -23,8 +24,6 @@ pub struct Motion {
     pub cos: Lanes,
     /// Sine of the heading.
     pub sin: Lanes,
-    /// Metres driven in the last step.
-    pub(super) moved: Lanes,
     /// The segment that the vehicle is on starts here: position (m) and arc length (m).
     from_x: Lanes,
     from_y: Lanes,
@@ -45,7 +44,6 @@ impl Motion {
             y: zero,
             cos: [1.0; LANES],
             sin: zero,
-            moved: zero,
             from_x: zero,
             from_y: zero,
             from_s: zero,
@@ -73,11 +71,23 @@ impl Motion {
         }
     }
 
+    /// What the vehicles cover, all of this `footprint`.
     #[inline]
-    pub(super) fn boxes(&self) -> Boxes {
-        Boxes {
-            centre: [self.x.into(), self.y.into()],
-            direction: [self.cos.into(), self.sin.into()],
+    pub(super) fn outlines(&self, footprint: Footprint) -> OrientedBox<Eight> {
+        OrientedBox {
+            centre: Point::new(self.x.into(), self.y.into()),
+            direction: Point::new(self.cos.into(), self.sin.into()),
+            half_length: Eight::of(0.5 * footprint.length),
+            half_width: Eight::of(0.5 * footprint.width),
+        }
+    }
+
+    /// The states of all vehicles.
+    #[inline]
+    pub(super) fn states(&self) -> State<Eight> {
+        State {
+            s: self.s.into(),
+            v: self.v.into(),
         }
     }
 
@@ -90,28 +100,26 @@ impl Motion {
         self.follow(library);
     }
 
-    /// One step under `accelerations` (m/s²), clamped.
+    /// Takes all vehicles on to `states`, none of them behind where it is.
     #[inline]
-    pub(super) fn advance(&mut self, library: &Library, accelerations: &Lanes) {
-        let (s, v) = advance(self.s.into(), self.v.into(), (*accelerations).into());
-        self.moved = (s - f32x8::from(self.s)).to_array();
-        self.s = s.to_array();
-        self.v = v.to_array();
+    pub(super) fn move_to(&mut self, states: &State<Eight>, library: &Library) {
+        self.s = states.s.lanes();
+        self.v = states.v.lanes();
         self.follow(library);
     }
 
     /// Moves on to the segments that hold `s`, and takes the poses from them.
     #[inline]
     fn follow(&mut self, library: &Library) {
-        let s = f32x8::from(self.s);
-        let mut left = s.simd_ge(f32x8::from(self.to_s)).to_bitmask();
+        let s = Eight::from(self.s);
+        let mut left = s.at_least(self.to_s.into());
         while left != 0 {
             self.leave_segment(left.trailing_zeros() as usize, library);
             left &= left - 1;
         }
-        let along = s - f32x8::from(self.from_s);
+        let along = s - self.from_s.into();
         let at = |from: Lanes, direction: Lanes| {
-            (f32x8::from(from) + f32x8::from(direction) * along).to_array()
+            (Eight::from(from) + Eight::from(direction) * along).lanes()
         };
         self.x = at(self.from_x, self.cos);
         self.y = at(self.from_y, self.sin);

@@ -10,9 +10,10 @@ mod scenario;
 pub use scenario::{Scenario, Setup};
 
 use crate::judge::Judge;
+use crate::stepper;
 use adversary::Adversary;
 use cede_controller::dangerous::{Rules, Sound};
-use cede_controller::kinematics::{STEP, State, advance};
+use cede_controller::kinematics::{STEP, State};
 use cede_controller::{Cause, Decision, Fault, Footprint, Observation, Shield, Vehicle};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -247,7 +248,8 @@ impl<R: Rules> World<R> {
     /// One step of everybody.
     fn advance(&mut self) {
         let late = f64::from(self.scenario.setup.contract.latency() / STEP);
-        for i in 0..self.states.len() {
+        let mut accelerations = [0.0; OTHERS + 1];
+        for (i, effective) in accelerations.iter_mut().enumerate().take(self.states.len()) {
             let shielded = matches!(self.minds[i], Mind::Shielded { .. });
             // Late by a whole period or not at all: the extremes of what the contract allows.
             let held = shielded && late > 0.5 && self.rng.random_bool(0.5);
@@ -256,14 +258,14 @@ impl<R: Rules> World<R> {
             } else {
                 self.commands[i]
             };
-            let acceleration = if shielded {
+            *effective = if shielded {
                 acceleration.min((self.scenario.limit - self.states[i].v).max(0.0) / STEP)
             } else {
                 acceleration
             };
-            self.states[i] = advance(self.states[i], acceleration);
             self.in_effect[i] = self.commands[i];
         }
+        stepper::advance(&mut self.states, &accelerations);
     }
 
     /// Whether a shielded vehicle touches any other.

@@ -2,13 +2,13 @@
 
 use crate::driving::inputs::Inputs;
 use crate::driving::replay::Transition;
-use cede_controller::kinematics::{State, advance};
+use cede_controller::Pair;
+use cede_controller::kinematics::State;
 use cede_controller::policy::MAX_ACCELERATION;
-use cede_controller::separation::OrientedBox;
-use cede_controller::{Footprint, Pair};
-use cede_data::{Encounter, Role};
+use cede_data::Encounter;
 use cede_sim::ObservationModel;
 use cede_sim::reward::{COLLISION, EpisodeLength, PAST_THE_RECORD, svo_deviation};
+use cede_sim::stepper::Stepper;
 use serde::{Deserialize, Serialize};
 
 /// What a policy is rewarded for.
@@ -31,6 +31,8 @@ const SPEED_SCALE: f32 = 3.0;
 pub struct Course<'e> {
     /// What the vehicles see.
     pub model: ObservationModel<'e>,
+    /// How they move, in the paper's protocol.
+    pub stepper: Stepper<'e>,
     /// The left-turner's recorded SVO (rad), step by step up to the one before the conflict point.
     svo: Vec<f32>,
 }
@@ -41,7 +43,12 @@ impl<'e> Course<'e> {
     pub fn new(encounter: &'e Encounter) -> Self {
         let model = ObservationModel::new(encounter);
         let svo = model.recorded().step_by(2).map(|pair| pair.svo()).collect();
-        Self { model, svo }
+        let stepper = Stepper::new(encounter, None);
+        Self {
+            model,
+            stepper,
+            svo,
+        }
     }
 
     /// r₁ in [0, 1] after `step` steps with the left-turner's `svo` (rad), on the way to the
@@ -70,17 +77,9 @@ impl Episode {
     /// The episode at the start of course number `course`.
     #[must_use]
     pub fn begin(course: usize, courses: &[Course<'_>], inputs: &Inputs) -> Self {
-        let start = |i: usize| {
-            let participant = &courses[course].model.encounter.participants[i];
-            let first = participant.record.first();
-            first.map_or_else(State::default, |sample| State {
-                s: sample.s,
-                v: sample.v,
-            })
-        };
         let mut episode = Self {
             course,
-            states: [start(0), start(1)],
+            states: courses[course].stepper.start(),
             svo: ObservationModel::FIRST_SVO,
             steps: Vec::new(),
             observation: Vec::new(),
@@ -112,21 +111,21 @@ impl Episode {
     ) -> Option<Vec<Transition>> {
         let course = &courses[self.course];
         let encounter = course.model.encounter;
-        let before = self.states;
-        self.states = [0, 1].map(|i| advance(before[i], MAX_ACCELERATION * actions[i]));
+        let accelerations = actions.map(|action| MAX_ACCELERATION * action);
+        let stepped = course
+            .stepper
+            .step(self.steps.len(), self.states, accelerations);
+        self.states = stepped.states;
         let steps = self.steps.len() + 1;
-        let distance = |i: usize| encounter.participants[i].conflict_s - self.states[i].s;
-        let arrived = distance(0) <= 0.0 || distance(1) <= 0.0;
-        let collided = self.collided(encounter);
         let mut next = Vec::new();
         let [view, _] = course.model.pairs(steps, self.states, self.svo);
         self.svo = view.svo();
         inputs.append(&view, &mut next);
-        let mut earned = -self.deviation(course, steps, arrived, reward);
-        if collided {
+        let mut earned = -self.deviation(course, steps, stepped.arrived(), reward);
+        if stepped.touching() {
             earned += COLLISION;
         }
-        let done = arrived || collided || steps >= 2 * encounter.steps as usize;
+        let done = stepped.end().is_some();
         let transition = Transition {
             observation: std::mem::replace(&mut self.observation, next.clone()),
             action: actions.to_vec(),
@@ -158,17 +157,6 @@ impl Episode {
                 (0.5 * (off(0) + off(1)) / SPEED_SCALE).min(1.0)
             }
         }
-    }
-
-    fn collided(&self, encounter: &Encounter) -> bool {
-        let [a, b] = Role::BOTH.map(|role| {
-            let pose = encounter
-                .judged(role)
-                .route
-                .pose(self.states[role as usize].s);
-            OrientedBox::new(pose, Footprint::PAPER)
-        });
-        a.overlaps(&b)
     }
 
     /// The transitions, with what the episode's length earns.

@@ -3,12 +3,11 @@
 use crate::driving::episodes::Course;
 use crate::driving::policy_view::PolicyView;
 use crate::nn::network::Tape;
-use cede_controller::kinematics::{State, advance};
-use cede_controller::separation::OrientedBox;
-use cede_controller::{Footprint, Pair};
-use cede_data::Role;
+use cede_controller::Pair;
+use cede_controller::kinematics::State;
 use cede_sim::ObservationModel;
 use cede_sim::reward::{COLLISION, EpisodeLength};
+use cede_sim::stepper::{End, Step, first};
 use serde::{Deserialize, Serialize};
 
 /// The paper's three figures, and its reward.
@@ -44,11 +43,12 @@ fn drive(courses: &[Course<'_>], mut act: impl FnMut(&[[Pair; 2]]) -> Vec<[f32; 
     let mut step = 0;
     while !running.is_empty() {
         let pairs: Vec<_> = running.iter().map(|r| r.seen).collect();
+        let mut commands = act(&pairs).into_iter();
+        running.retain_mut(|r| {
+            let stepped = r.advance(step, commands.next().unwrap_or_default());
+            !r.ends(&stepped, &mut score)
+        });
         step += 1;
-        for (r, command) in running.iter_mut().zip(act(&pairs)) {
-            r.advance(step, command);
-        }
-        running.retain(|r| !r.ends(step, &mut score));
     }
     let n = courses.len().max(1) as f32;
     score.priority_accuracy /= n;
@@ -69,13 +69,7 @@ struct Running<'c> {
 
 impl<'c> Running<'c> {
     fn new(course: &'c Course<'c>) -> Self {
-        let states = [0, 1].map(|i| {
-            let first = course.model.encounter.participants[i].record.first();
-            first.map_or_else(State::default, |sample| State {
-                s: sample.s,
-                v: sample.v,
-            })
-        });
+        let states = course.stepper.start();
         Self {
             course,
             states,
@@ -85,67 +79,41 @@ impl<'c> Running<'c> {
         }
     }
 
-    fn advance(&mut self, step: usize, commands: [f32; 2]) {
+    /// One step, after `taken` of them.
+    fn advance(&mut self, taken: usize, commands: [f32; 2]) -> Step {
+        let stepped = self.course.stepper.step(taken, self.states, commands);
         let svo = self.seen[0].svo();
-        self.states = [0, 1].map(|i| advance(self.states[i], commands[i]));
-        self.seen = self.course.model.pairs(step, self.states, svo);
+        self.states = stepped.states;
+        self.seen = self.course.model.pairs(taken + 1, self.states, svo);
         self.speeds += self.states[0].v + self.states[1].v;
         // At the conflict point itself the SVO is pinned to an end of its range.
-        if !self.arrived() {
-            self.earned -= self.course.deviation(step, self.seen[0].svo());
+        if !stepped.arrived() {
+            self.earned -= self.course.deviation(taken + 1, self.seen[0].svo());
         }
-        if self.collided() {
+        if stepped.touching() {
             self.earned += COLLISION;
         }
+        stepped
     }
 
-    /// Distance (m) past the conflict point.
-    fn past(&self, role: Role) -> f32 {
-        let conflict = self.course.model.encounter.judged(role).conflict_s;
-        self.states[role as usize].s - conflict
-    }
-
-    fn arrived(&self) -> bool {
-        Role::BOTH.into_iter().any(|role| self.past(role) >= 0.0)
-    }
-
-    fn collided(&self) -> bool {
-        let [left, other] = Role::BOTH.map(|role| {
-            let route = &self.course.model.encounter.judged(role).route;
-            OrientedBox::new(route.pose(self.states[role as usize].s), Footprint::PAPER)
-        });
-        left.overlaps(&other)
-    }
-
-    /// Within one step, whoever is further past in time was there first.
-    fn first(&self) -> Role {
-        let time = |role: Role| self.past(role) / self.states[role as usize].v.max(0.1);
-        if time(Role::Left) >= time(Role::Other) {
-            Role::Left
-        } else {
-            Role::Other
-        }
-    }
-
-    /// Whether the episode is over after `step` steps; if so, it is counted.
-    fn ends(&self, step: usize, score: &mut Score) -> bool {
+    /// Whether the episode is over after a step; if so, it is counted.
+    fn ends(&self, stepped: &Step, score: &mut Score) -> bool {
         let encounter = self.course.model.encounter;
-        if self.collided() {
-            score.collisions += 1;
-        } else if self.arrived() {
-            let right = self.first() == encounter.first;
-            score.priority_accuracy += if right { 1.0 } else { 0.0 };
-        } else if step >= 2 * encounter.steps as usize {
-            score.time_outs += 1;
-        } else {
-            return false;
+        match stepped.end() {
+            None => return false,
+            Some(End::Collision) => score.collisions += 1,
+            Some(End::TimeOut) => score.time_outs += 1,
+            Some(End::Finished) => {
+                let right = first(stepped.arrivals()) == Some(encounter.first);
+                score.priority_accuracy += if right { 1.0 } else { 0.0 };
+            }
         }
         let length = EpisodeLength {
-            steps: u32::try_from(step).unwrap_or(u32::MAX),
+            steps: stepped.taken as u32,
             recorded: encounter.steps,
         };
         score.length_error += length.error().abs();
-        score.reward += (self.earned + length.replayed_total(self.speeds)) / step as f32;
+        score.reward += (self.earned + length.replayed_total(self.speeds)) / stepped.taken;
         true
     }
 }

@@ -6,9 +6,10 @@ use crate::driving::slopes::slopes;
 use crate::driving::states;
 use crate::nn::network::{Delta, Network, Tape};
 use cede_controller::Pair;
-use cede_controller::kinematics::{STEP, State, advance};
+use cede_controller::kinematics::{STEP, State};
 use cede_controller::policy::MAX_ACCELERATION;
 use cede_sim::ObservationModel;
+use cede_sim::stepper::advance;
 use serde::{Deserialize, Serialize};
 
 /// Where one place of a batch begins.
@@ -100,7 +101,7 @@ impl ClosedLoop {
             step.commands
                 .extend(both.map(|row| [command(&row[..width]), command(&row[width..])]));
             for (states, commands) in self.last.iter_mut().zip(&step.commands) {
-                *states = [0, 1].map(|i| advance(states[i], commands[i][0]));
+                advance(states, &commands.map(|[own, _]| own));
             }
         }
     }
