@@ -1,7 +1,7 @@
-//! `cede train` and `cede reproduce` from the outside: interrupted, gone on with, and out of luck.
+//! `cede train` and `cede reproduce` as commands: interruption, resumption and failures.
 #![cfg(unix)]
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
@@ -35,7 +35,7 @@ fn succeed(command: &mut Command) {
     assert!(output.status.success(), "{stderr}");
 }
 
-/// Starts `command`, which logs to `log`, and presses Ctrl-C once it learns.
+/// Starts `command`, which logs to `log`, and presses Ctrl-C after the first scalars.
 fn interrupt(mut command: Command, log: &Path) -> Option<i32> {
     let mut child = command.stderr(Stdio::null()).spawn().unwrap();
     let curve = log.join("scalars.csv");
@@ -57,7 +57,7 @@ fn press_ctrl_c(child: &Child) {
 }
 
 #[test]
-fn an_interrupted_training_goes_on_to_the_same_bits() {
+fn an_interrupted_training_resumes_to_the_same_bits() {
     for algorithm in ["bc", "sac", "apg"] {
         let [whole, parts] = [(); 2].map(|()| tempfile::tempdir().unwrap());
         succeed(&mut train(algorithm, whole.path()));
@@ -75,7 +75,7 @@ fn an_interrupted_training_goes_on_to_the_same_bits() {
 }
 
 #[test]
-fn reproduce_gives_rows_baselines_and_curves_and_takes_up_what_is_there() {
+fn reproduce_gives_rows_baselines_and_curves_and_resumes_from_its_folder() {
     let folder = tempfile::tempdir().unwrap();
     let reproduce = |extra: &[&str]| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_cede"));
@@ -121,7 +121,7 @@ fn listens(child: &Child) -> bool {
 
 #[test]
 #[cfg(target_os = "linux")]
-fn an_interrupted_reproduce_goes_on_to_the_same_bits() {
+fn an_interrupted_reproduce_resumes_to_the_same_bits() {
     let reproduce = |folder: &Path| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_cede"));
         command
@@ -208,7 +208,7 @@ fn where_no_checkpoint_can_be_written_the_last_one_stays() {
 }
 
 #[test]
-fn settings_that_no_training_can_begin_with_are_refused_at_once() {
+fn settings_out_of_range_are_refused_at_once() {
     let folder = tempfile::tempdir().unwrap();
     let output = train("apg", folder.path())
         .args(["--set", "width=100000000000"])
@@ -222,27 +222,53 @@ fn settings_that_no_training_can_begin_with_are_refused_at_once() {
     );
 }
 
+/// A checkpoint of an interrupted training in `folder`.
+fn checkpoint(folder: &Path) -> PathBuf {
+    let log = folder.join("log");
+    let mut first = train("sac", folder);
+    first.arg("--log").arg(&log);
+    assert_eq!(interrupt(first, &log), Some(4));
+    folder.join("driver.checkpoint")
+}
+
+/// Asserts that a training refuses to resume from `checkpoint`, with these words, and keeps the file.
+fn assert_refused(folder: &Path, checkpoint: &Path, words: &[&str]) {
+    let bytes = std::fs::read(checkpoint).unwrap();
+    let output = train("sac", folder).arg("--resume").output().unwrap();
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{stderr}");
+    // Messages are wrapped to the width of the terminal.
+    let words_of = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    for expected in words {
+        assert!(words_of(&stderr).contains(expected), "{stderr}");
+    }
+    assert_eq!(std::fs::read(checkpoint).unwrap(), bytes);
+}
+
 #[test]
 fn a_damaged_checkpoint_is_refused_and_stays() {
     let folder = tempfile::tempdir().unwrap();
-    let log = folder.path().join("log");
-    let mut first = train("sac", folder.path());
-    first.arg("--log").arg(&log);
-    assert_eq!(interrupt(first, &log), Some(4));
-    let checkpoint = folder.path().join("driver.checkpoint");
-    let mut bytes = std::fs::read(&checkpoint).unwrap();
+    let file = checkpoint(folder.path());
+    let mut bytes = std::fs::read(&file).unwrap();
     let middle = bytes.len() / 2;
     bytes[middle] ^= 1;
-    std::fs::write(&checkpoint, &bytes).unwrap();
-    let output = train("sac", folder.path())
-        .arg("--resume")
-        .output()
-        .unwrap();
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(3), "{stderr}");
-    assert!(
-        stderr.contains("checksum") && stderr.contains("delete it"),
-        "{stderr}"
+    std::fs::write(&file, &bytes).unwrap();
+    assert_refused(folder.path(), &file, &["checksum", "delete it"]);
+}
+
+#[test]
+fn a_checkpoint_of_another_version_is_refused_and_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = checkpoint(folder.path());
+    let mut bytes = std::fs::read(&file).unwrap();
+    bytes[8..12].copy_from_slice(&7_u32.to_le_bytes());
+    let end = bytes.len() - 4;
+    let checksum = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(&bytes[..end]);
+    bytes[end..].copy_from_slice(&checksum.to_le_bytes());
+    std::fs::write(&file, &bytes).unwrap();
+    assert_refused(
+        folder.path(),
+        &file,
+        &["version 7", "the program that wrote it", "without --resume"],
     );
-    assert_eq!(std::fs::read(&checkpoint).unwrap(), bytes);
 }

@@ -1,7 +1,7 @@
-//! One update of soft actor-critic at the paper's size, beside the machine's matrix products.
+//! One update of soft actor-critic at the paper's size, compared with the machine's matrix products.
 //!
-//! Throughput is in floating-point operations a CPU-second: those of the matrix products that the update's
-//! mathematics asks for, so that its share of the peak can be read off.
+//! Throughput is in floating-point operations per CPU-second. It counts the operations of the update's
+//! matrix products only, so that it is comparable with the peak.
 
 #[path = "../../sim/benches/processor/mod.rs"]
 mod processor;
@@ -18,17 +18,17 @@ use rand_pcg::Pcg64;
 const BATCH: usize = 512;
 const FEATURES: usize = 8;
 const ACTIONS: usize = 2;
-/// Side of the square matrices whose product stands for the machine's peak.
+/// Size of the square matrices whose product measures the machine's peak.
 const SIDE: usize = 768;
 
-/// Operations of an update with hidden layers of `width`. A pass through a network takes two for each
-/// sample and weight; so do the derivatives with respect to what it was told, and those with respect to the weights.
+/// Operations of an update with hidden layers of `width`. A forward pass takes two operations per sample
+/// and weight, and so do the derivatives with respect to the inputs and those with respect to the weights.
 fn operations(width: usize) -> u64 {
     let weights = |inputs, outputs| inputs * width + 2 * width * width + width * outputs;
     let actor = weights(FEATURES, 2 * ACTIONS);
     let critic = weights(FEATURES + ACTIONS, 1);
-    // Actor: for the labels, for its loss and both derivatives. Critics, twice: the target's value, then
-    // value and both derivatives for the critic's loss, value and one derivative for the actor's.
+    // Actor: for the targets of the critics; for its loss with both derivatives. Each of two critics: the
+    // target network; the critic's loss with both derivatives; the actor's loss with one derivative.
     let passes = 4 * actor + 2 * 6 * critic;
     (2 * BATCH * passes) as u64
 }
@@ -62,7 +62,7 @@ fn update(c: &mut Criterion<CpuTime>) {
 fn product(c: &mut Criterion<CpuTime>) {
     let mut group = c.benchmark_group("product");
     let mut random = Pcg64::seed_from_u64(2);
-    // The machine's peak, then the product that an update consists of.
+    // The machine's peak, then the products of an update.
     for (rows, inner, columns) in [(SIDE, SIDE, SIDE), (BATCH, 128, 128), (BATCH, 256, 256)] {
         let mut draw =
             |n: usize| -> Vec<f32> { (0..n).map(|_| random.random_range(-1.0..1.0)).collect() };

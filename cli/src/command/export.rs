@@ -11,13 +11,13 @@ use std::path::PathBuf;
 const HELP: &str = "\
 ONNX: raw features in, accelerations (m/s²) out; normalisation and squashing are in the graph. Metadata:
 cede.features, cede.feature_names, cede.perspective, cede.provenance_sha256.
-Safetensors: the bare numbers of the network and of the normalisation, with the same metadata as JSON.";
+Safetensors: the parameters of the network and of the normalisation, with the same metadata as JSON.";
 
 /// Options of `cede export`.
 #[derive(clap::Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Args {
-    /// The policy (`.cede`); by default the one that comes with the program
+    /// The policy (`.cede`); by default the embedded one
     #[arg(long, value_name = "FILE")]
     weights: Option<PathBuf>,
     /// The format

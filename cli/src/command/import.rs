@@ -14,21 +14,21 @@ use std::path::PathBuf;
 fn help() -> String {
     let sets = FeatureSet::ALL.map(|set| format!("{} {}", set.name(), set.count()));
     format!("\
-Graphs that are understood: a chain, in this order, of
+Supported graphs: a chain, in this order, of
   1. Sub, Add, Mul and Div with constants, and one Clip to ± a number: the normalisation; each may be missing
   2. one to three hidden layers of at most 128 neurons: Gemm, or MatMul and Add, then Relu
   3. an output layer: Gemm, or MatMul and Add
   4. Tanh, and Mul by 3: each may be missing, as accelerations are always 3·tanh of the outputs, in m/s²
-Identity, Dropout and Flatten (axis 1) may stand anywhere. Constants are float, double or int64, inside the file.
+Identity, Dropout and Flatten (axis 1) may occur anywhere. Constants are float, double or int64, inside the file.
 
 Inputs: the features of one set, in its order. Their numbers: {sets}; `cede export`
 writes their names to the metadata.
 Outputs, 2 or 4, or for an ego policy 1: the first vehicle's command, the second's, and two that are ignored.
-A joint policy's vehicles are the left-turner and the other. An ego policy's second output is what it expects
-of the other; where it is missing, that the other keeps its speed.
+A joint policy's vehicles are the left-turner and the other. An ego policy's second output is the
+acceleration that it expects of the other; without it, the other is expected to keep its speed.
 
-Metadata that are read: cede.features (raw, route, traffic, scene) and cede.perspective (ego, joint). --features and
---perspective go before them. Without cede.features, --features is needed; without cede.perspective, it is ego.
+Metadata: cede.features (raw, route, traffic, scene) and cede.perspective (ego, joint). --features and
+--perspective override them. Without cede.features, --features is required; cede.perspective defaults to ego.
 
 Weights must be within ± 1000. A graph without Clip gets one; the limits of each feature are printed.",
         sets = sets.join(", ")

@@ -22,8 +22,8 @@ pub(crate) struct Args {
     method: Method,
     #[command(flatten)]
     source: Option<Source>,
-    /// The weights file to write; its provenance goes beside it, to FILE.txt, and checkpoints to
-    /// FILE.checkpoint
+    /// The weights file to write; FILE.txt receives its provenance, FILE.checkpoint the
+    /// checkpoints
     #[arg(
         long,
         value_name = "FILE.cede",
