@@ -7,7 +7,7 @@ use crate::driving::states;
 use crate::nn::network::{Delta, Network, Tape};
 use cede_controller::Pair;
 use cede_controller::kinematics::{STEP, State};
-use cede_controller::policy::MAX_ACCELERATION;
+use cede_controller::policy::{MAX_ACCELERATION, acceleration};
 use cede_sim::ObservationModel;
 use cede_sim::stepper::advance;
 use serde::{Deserialize, Serialize};
@@ -201,11 +201,6 @@ impl Step {
         }
         (cost, by)
     }
-}
-
-/// The acceleration (m/s²) that a mean commands.
-fn acceleration(mean: f32) -> f32 {
-    MAX_ACCELERATION * libm::tanhf(mean)
 }
 
 impl Delta {
