@@ -1,4 +1,5 @@
-//! Steps of the batch stepper a second, and one box-against-box test beside parry2d's.
+//! Steps of the stepper a second, eight encounters at a time and one at a time, with the embedded policy and
+//! with none; and one box-against-box test beside parry2d's.
 //!
 //! What runs on one thread is measured in CPU time, which other programs on the machine do not
 //! stretch; the scaling with threads needs the wall clock and a quiet machine.
@@ -8,9 +9,13 @@ mod processor;
 #[path = "../tests/scenes/mod.rs"]
 mod scenes;
 
+use cede_controller::kinematics::State;
+use cede_controller::policy::embedded;
 use cede_controller::separation::OrientedBox;
-use cede_controller::{Footprint, Point, Pose};
+use cede_controller::{Footprint, Point, Policy, Pose};
+use cede_sim::ObservationModel;
 use cede_sim::batch::{Batch, Block, LANES, Library};
+use cede_sim::stepper::Stepper;
 use criterion::measurement::Measurement;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use processor::CpuTime;
@@ -57,6 +62,83 @@ fn batch(criterion: &mut Criterion<CpuTime>) {
     steps::<2>(&mut group, 32_768, 2);
     steps::<4>(&mut group, 4096, 1);
     steps::<8>(&mut group, 4096, 1);
+    group.finish();
+}
+
+/// The embedded policy drives the two judged vehicles of every encounter, each as it sees the other.
+fn policy_drives(policy: &Policy<'_>, models: &[ObservationModel<'_>], batch: &mut Batch<'_, 2>) {
+    batch.for_each(|library, block| {
+        let mut accelerations = [[0.0; LANES]; 2];
+        for lane in 0..LANES {
+            let states = block.vehicles().each_ref().map(|motion| motion.state(lane));
+            let taken = block.length(lane).steps as usize;
+            let model = &models[block.encounter(lane)];
+            let pairs = model.pairs(taken, states, block.svo()[lane]);
+            for (asked, pair) in accelerations.iter_mut().zip(&pairs) {
+                asked[lane] = policy.act(pair)[0];
+            }
+        }
+        block.advance(library, &accelerations);
+        block.restart(library);
+    });
+}
+
+fn batch_with_policy(criterion: &mut Criterion<CpuTime>) {
+    let recorded = scenes::encounters(400, 2, 1);
+    let models: Vec<_> = recorded.iter().map(ObservationModel::new).collect();
+    let library = Library::new(&recorded, Footprint::PAPER).unwrap();
+    let policy = Policy::new(embedded::words()).unwrap();
+    let mut batch = Batch::<2>::new(&library, 512, 2);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1);
+    let pool = pool.build().unwrap();
+    let mut group = criterion.benchmark_group("batch, embedded policy");
+    group.throughput(Throughput::Elements(512));
+    group.bench_function("2 vehicles, 512 encounters, 1 threads", |bencher| {
+        pool.install(|| bencher.iter(|| policy_drives(&policy, &models, &mut batch)));
+    });
+    group.finish();
+}
+
+/// Steps one encounter after the other to its end under `drive`; gives the steps that it took.
+fn run_all(
+    models: &[ObservationModel<'_>],
+    drive: impl Fn(&ObservationModel<'_>, usize, [State; 2]) -> [f32; 2],
+) -> u64 {
+    let mut steps = 0;
+    for model in models {
+        let stepper = Stepper::new(model.encounter, None);
+        let mut states = stepper.start();
+        for taken in 0.. {
+            let step = stepper.step(taken, states, drive(model, taken, states));
+            states = step.states;
+            steps += 1;
+            if step.end().is_some() {
+                break;
+            }
+        }
+    }
+    steps
+}
+
+fn one_at_a_time(criterion: &mut Criterion<CpuTime>) {
+    let recorded = scenes::encounters(100, 2, 1);
+    let models: Vec<_> = recorded.iter().map(ObservationModel::new).collect();
+    let policy = Policy::new(embedded::words()).unwrap();
+    let none =
+        |_: &ObservationModel<'_>, _, states: [State; 2]| states.map(|state| 0.5 * (8.0 - state.v));
+    let embedded = |model: &ObservationModel<'_>, taken, states| {
+        let pairs = model.pairs(taken, states, ObservationModel::FIRST_SVO);
+        pairs.map(|pair| policy.act(&pair)[0])
+    };
+    let mut group = criterion.benchmark_group("one encounter at a time");
+    group.throughput(Throughput::Elements(run_all(&models, none)));
+    group.bench_function("no policy", |bencher| {
+        bencher.iter(|| run_all(black_box(&models), none));
+    });
+    group.throughput(Throughput::Elements(run_all(&models, embedded)));
+    group.bench_function("embedded policy", |bencher| {
+        bencher.iter(|| run_all(black_box(&models), embedded));
+    });
     group.finish();
 }
 
@@ -133,7 +215,7 @@ fn boxes(criterion: &mut Criterion<CpuTime>) {
 criterion_group!(
     name = single;
     config = Criterion::default().with_measurement(CpuTime);
-    targets = batch, boxes
+    targets = batch, batch_with_policy, one_at_a_time, boxes
 );
 criterion_group!(wall, threads);
 criterion_main!(single, wall);
