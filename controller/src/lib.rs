@@ -77,7 +77,7 @@ pub mod shield;
 
 pub use controller::Controller;
 pub use decision::{Action, Breach, Cause, Decision, Intervention, Prediction, Reason};
-pub use geometry::{Footprint, Point, Pose};
+pub use geometry::{Footprint, Point, Pose, UnitVector, Vector};
 pub use junction::{
     ConflictKind, Path, Route, RouteConflict, RouteError, Scene, SceneError, Span, Zone,
 };

@@ -5,7 +5,7 @@ use cede_controller::junction::scene::RouteConflict;
 use cede_controller::kinematics::State;
 use cede_controller::policy::pair::{Part, RightOfWay, VehicleState};
 use cede_controller::{
-    ConflictKind, Footprint, NearbyVehicle, Pair, Path, Point, Scene, TrafficContext,
+    ConflictKind, Footprint, NearbyVehicle, Pair, Path, Scene, TrafficContext, UnitVector,
 };
 use cede_data::encounter::Encounter;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4};
@@ -71,7 +71,7 @@ pub struct ObservationModel<'e> {
     pub encounter: &'e Encounter,
     kind: ConflictKind,
     conflicts: [f32; 2],
-    exits: [Point; 2],
+    exits: [UnitVector; 2],
     bystanders: [Bystanders; 2],
 }
 

@@ -129,9 +129,9 @@ fn first_quadrant_angle(y: f32x8, x: f32x8) -> f32x8 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use cede_controller::geometry::{Point, Pose, unit};
     use cede_controller::kinematics::State;
     use cede_controller::separation::OrientedBox;
-    use cede_controller::{Point, Pose};
     use proptest::prelude::*;
 
     const TOLERANCE: f32 = 4e-7;
@@ -193,7 +193,7 @@ mod tests {
         ) {
             let pose = |x: f32, y: f32, heading: f32| Pose {
                 position: Point::new(x, y),
-                direction: Point::new(heading.cos(), heading.sin()),
+                direction: unit(heading.cos(), heading.sin()),
             };
             let (a, b) = (pose(1.0, 2.0, heading), pose(1.0 + x, 2.0 + y, other_heading));
             let outline = |pose| OrientedBox::new(pose, Footprint::PAPER);

@@ -3,8 +3,8 @@
 use super::lanes::{Boxes, advance};
 use super::library::{Library, Track};
 use super::{LANES, Lanes};
+use cede_controller::geometry::{Point, Pose, unit};
 use cede_controller::kinematics::State;
-use cede_controller::{Point, Pose};
 use wide::f32x8;
 
 /// One vehicle of each of the encounters that a block steps together; entry `i` of each array
@@ -69,7 +69,7 @@ impl Motion {
     pub fn pose(&self, lane: usize) -> Pose {
         Pose {
             position: Point::new(self.x[lane], self.y[lane]),
-            direction: Point::new(self.cos[lane], self.sin[lane]),
+            direction: unit(self.cos[lane], self.sin[lane]),
         }
     }
 

@@ -6,7 +6,7 @@ use super::{bound, shortfall};
 use crate::interval::Interval;
 use cede_controller::Real;
 use cede_controller::Route;
-use cede_controller::geometry::{Footprint, Point, Pose};
+use cede_controller::geometry::{Footprint, Point, Pose, unit};
 use cede_controller::junction::scene::{Path, Scene};
 use cede_controller::junction::zone::{FAR, Zone};
 use cede_controller::observation::{Observation, Vehicle};
@@ -236,7 +236,7 @@ fn shield_margin(
 ) -> f32 {
     let pose = Pose {
         position: Point::new(0.0, 0.0),
-        direction: Point::new(1.0, 0.0),
+        direction: unit(1.0, 0.0),
     };
     let vehicle = |(s, speed)| Vehicle { s, speed, pose };
     let seen = Observation {
