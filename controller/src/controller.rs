@@ -1,7 +1,7 @@
 //! The controller: from an observation, through policy and shield, to a decision.
 
 use crate::decision::{Decision, Prediction};
-use crate::geometry::{Footprint, Point};
+use crate::geometry::{Footprint, UnitVector};
 use crate::junction::conflict::ConflictKind;
 use crate::junction::scene::{RouteConflict, Scene};
 use crate::observation::{Fault, Observation, Vehicle};
@@ -162,7 +162,7 @@ impl<'w, const N: usize> Controller<'w, N> {
 
 fn vehicle_state(
     vehicle: &Vehicle,
-    exit: Point,
+    exit: UnitVector,
     conflict: f32,
     footprint: Footprint,
 ) -> VehicleState {
@@ -203,6 +203,7 @@ fn traffic<const N: usize>(scene: &Scene<N>, seen: &Observation<N>, except: u8) 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Point;
     use crate::decision::Cause;
     use crate::junction::route::Route;
     use crate::junction::scene::Path;

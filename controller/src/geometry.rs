@@ -1,78 +1,47 @@
-//! Points, poses and footprints in the plane.
+//! Points, vectors, poses and footprints in the plane: [`nalgebra`]'s types, in metres.
+//!
+//! [`nalgebra`] is used without features, so on a microcontroller it has no square root: lengths are
+//! those of [`length`] and [`distance`], which have the same bits everywhere.
 
-use crate::real::Real;
+use nalgebra::{Point2, Scalar, Unit, UnitVector2, Vector2};
 
-/// A point, or a vector between two points, in metres, in any fixed frame of the plane.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Point<R = f32> {
-    /// Metres along the first axis (east).
-    pub x: R,
-    /// Metres along the second axis (north).
-    pub y: R,
+/// A point in metres, in any fixed frame of the plane: first axis east, second north.
+pub type Point<R = f32> = Point2<R>;
+
+/// The difference of two points, in metres.
+pub type Vector<R = f32> = Vector2<R>;
+
+/// A direction: a vector of length 1.
+pub type UnitVector = UnitVector2<f32>;
+
+/// The direction (`x`, `y`), which the caller knows to have length 1: its bits stay as they are.
+#[must_use]
+#[inline]
+pub const fn unit(x: f32, y: f32) -> UnitVector {
+    Unit::new_unchecked(Vector::new(x, y))
 }
 
-impl<R> Point<R> {
-    /// The point at (`x`, `y`), in metres.
-    #[must_use]
-    pub const fn new(x: R, y: R) -> Self {
-        Self { x, y }
-    }
+/// Length of `vector` in metres; correctly rounded square root, so the same bits everywhere.
+#[must_use]
+#[inline]
+pub fn length(vector: &Vector) -> f32 {
+    libm::sqrtf(vector.dot(vector))
 }
 
-impl<R: Real> Point<R> {
-    /// Distance to `other` in metres.
-    #[must_use]
-    pub fn distance(self, other: Self) -> R {
-        (other - self).norm()
-    }
-
-    /// Length of the vector in metres; correctly rounded square root, so the same bits everywhere.
-    #[must_use]
-    pub fn norm(self) -> R {
-        self.dot(self).sqrt()
-    }
-
-    /// Scalar product in m².
-    #[must_use]
-    pub fn dot(self, other: Self) -> R {
-        self.x * other.x + self.y * other.y
-    }
-
-    /// Third component of the cross product in m²: positive if `other` points to the left of `self`.
-    #[must_use]
-    pub fn cross(self, other: Self) -> R {
-        self.x * other.y - self.y * other.x
-    }
-}
-
-impl<R: Real> core::ops::Add for Point<R> {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self::new(self.x + other.x, self.y + other.y)
-    }
-}
-
-impl<R: Real> core::ops::Sub for Point<R> {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        Self::new(self.x - other.x, self.y - other.y)
-    }
-}
-
-impl<R: Real> core::ops::Mul<R> for Point<R> {
-    type Output = Self;
-    fn mul(self, factor: R) -> Self {
-        Self::new(self.x * factor, self.y * factor)
-    }
+/// Distance between two points in metres, with the same bits everywhere.
+#[must_use]
+#[inline]
+pub fn distance(a: &Point, b: &Point) -> f32 {
+    length(&(b - a))
 }
 
 /// Where a vehicle is and where it points.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose<R = f32> {
+pub struct Pose<R: Scalar = f32> {
     /// Centre of the footprint in metres.
     pub position: Point<R>,
     /// Unit vector of the heading; kept instead of an angle so that no trigonometry is needed.
-    pub direction: Point,
+    pub direction: UnitVector,
 }
 
 /// The rectangle that a vehicle covers, centred on its reference point.
@@ -90,4 +59,27 @@ impl Footprint {
         length: 5.0,
         width: 2.0,
     };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Decisions depend on the order of nalgebra's operations: no other order has these bits.
+        #[test]
+        fn products_and_lengths_have_the_bits_of_their_formulas(bits in any::<[u32; 4]>()) {
+            let [x, y, u, v] = bits.map(f32::from_bits);
+            let (a, b) = (Vector::new(x, y), Vector::new(u, v));
+            let same = |found: f32, formula: f32| {
+                found.to_bits() == formula.to_bits() || (found.is_nan() && formula.is_nan())
+            };
+            prop_assert!(same(a.dot(&b), x * u + y * v));
+            prop_assert!(same(a.perp(&b), x * v - y * u));
+            prop_assert!(same(length(&a), libm::sqrtf(x * x + y * y)));
+            let unit = unit(x, y);
+            prop_assert!(same(unit.x, x) && same(unit.y, y));
+        }
+    }
 }

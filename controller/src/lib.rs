@@ -79,7 +79,7 @@ extern crate std;
 mod controller;
 pub mod dangerous;
 mod decision;
-mod geometry;
+pub mod geometry;
 pub mod junction;
 pub mod kinematics;
 mod observation;
@@ -90,7 +90,7 @@ pub mod shield;
 
 pub use controller::{Controller, FREE};
 pub use decision::{Action, Breach, Cause, Decision, Intervention, Prediction, Reason};
-pub use geometry::{Footprint, Point, Pose};
+pub use geometry::{Footprint, Point, Pose, UnitVector, Vector};
 pub use junction::{
     CONFLICT_RADIUS, ConflictKind, MAX_OTHERS, Path, Route, RouteConflict, RouteError, Scene,
     SceneError, Span, Zone,

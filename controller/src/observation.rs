@@ -9,7 +9,8 @@ pub struct Vehicle {
     pub s: f32,
     /// Speed along its route in m/s, in [−[`Vehicle::REVERSING`], [`Vehicle::MAX_SPEED`]]; what is below 0 counts as 0.
     pub speed: f32,
-    /// Where it is and where it points; the direction is a unit vector to within 10 %.
+    /// Where it is and where it points; the direction is a unit vector to within 10 %
+    /// ([`crate::geometry::unit`] takes it as it is sensed).
     pub pose: Pose,
 }
 
@@ -25,7 +26,7 @@ impl Vehicle {
     fn checked(mut self) -> Option<Self> {
         let within = |value: f32, limit: f32| value.abs() <= limit;
         let (position, direction) = (self.pose.position, self.pose.direction);
-        let norm = direction.dot(direction);
+        let norm = direction.dot(&direction);
         let good = within(self.s, Self::MAX_ARC)
             && (-Self::REVERSING..=Self::MAX_SPEED).contains(&self.speed)
             && within(position.x, crate::Route::<2>::MAX_COORDINATE)
@@ -101,7 +102,7 @@ impl<const N: usize> Observation<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Point;
+    use crate::geometry::{Point, unit};
 
     fn vehicle() -> Vehicle {
         Vehicle {
@@ -109,7 +110,7 @@ mod tests {
             speed: -0.1,
             pose: Pose {
                 position: Point::new(1.0, 2.0),
-                direction: Point::new(0.0, -1.0),
+                direction: unit(0.0, -1.0),
             },
         }
     }
@@ -134,8 +135,8 @@ mod tests {
                 |v, x| v.speed = x,
                 |v, x| v.pose.position.x = x,
                 |v, x| v.pose.position.y = x,
-                |v, x| v.pose.direction.x = x,
-                |v, x| v.pose.direction.y = x,
+                |v, x| v.pose.direction = unit(x, v.pose.direction.y),
+                |v, x| v.pose.direction = unit(v.pose.direction.x, x),
             ];
             for set in broken {
                 let mut other = vehicle();

@@ -5,6 +5,7 @@
 //! carry derivatives; proofs on intervals and on expressions for a solver.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
+use nalgebra::Scalar;
 
 /// What a margin of the shield needs of a number.
 ///
@@ -35,7 +36,7 @@ pub trait Real:
 }
 
 /// What kinematics, the separation of footprints, the features and the SVO need beside [`Real`].
-pub trait Elementary: Real {
+pub trait Elementary: Real + Scalar {
     /// `self` times the constant `numerator`/`denominator`, the quotient rounded to `f32`.
     #[must_use]
     fn scaled(self, numerator: f32, denominator: f32) -> Self;

@@ -5,16 +5,17 @@
 //! Lin and Manocha, "OBBTree", SIGGRAPH 1996). Only +, −, × and comparisons are used, so the result
 //! has the same bits on every machine.
 
-use crate::geometry::{Footprint, Point, Pose};
+use crate::geometry::{Footprint, Point, Pose, Vector};
 use crate::real::Elementary;
+use nalgebra::Scalar;
 
 /// A rectangle anywhere in the plane: what a vehicle covers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OrientedBox<R = f32> {
+pub struct OrientedBox<R: Scalar = f32> {
     /// Centre in metres.
     pub centre: Point<R>,
     /// Unit vector along the length.
-    pub direction: Point<R>,
+    pub direction: Vector<R>,
     /// Half of the length in metres.
     pub half_length: R,
     /// Half of the width in metres.
@@ -28,7 +29,7 @@ impl OrientedBox {
     pub fn new(pose: Pose, footprint: Footprint) -> Self {
         Self {
             centre: pose.position,
-            direction: pose.direction,
+            direction: pose.direction.into_inner(),
             half_length: 0.5 * footprint.length,
             half_width: 0.5 * footprint.width,
         }
@@ -59,19 +60,35 @@ impl<R: Elementary> OrientedBox<R> {
         a.max(b).max(c.max(d))
     }
 
+    /// The squared distance (m²) of the two centres.
+    #[must_use]
+    #[inline]
+    pub fn centres_apart_squared(&self, other: &Self) -> R {
+        let (x, y) = (
+            other.centre.x - self.centre.x,
+            other.centre.y - self.centre.y,
+        );
+        x * x + y * y
+    }
+
     /// Gap along each of the four directions: own length and width, the other's length and width.
     #[inline]
     fn separations(&self, other: &Self) -> [R; 4] {
-        let between = other.centre - self.centre;
-        let cos = self.direction.dot(other.direction).abs();
-        let sin = self.direction.cross(other.direction).abs();
+        // By components: not every number has the assigning operators of nalgebra's vectors.
+        let dot = |a: &Vector<R>, b: &Vector<R>| a.x * b.x + a.y * b.y;
+        let cross = |a: &Vector<R>, b: &Vector<R>| a.x * b.y - a.y * b.x;
+        let (from, to) = (&self.centre, &other.centre);
+        let between = Vector::new(to.x - from.x, to.y - from.y);
+        let (along, other_along) = (&self.direction, &other.direction);
+        let cos = dot(along, other_along).abs();
+        let sin = cross(along, other_along).abs();
         let (l, w) = (self.half_length, self.half_width);
         let (other_l, other_w) = (other.half_length, other.half_width);
         [
-            between.dot(self.direction).abs() - (other_l * cos + other_w * sin + l),
-            between.cross(self.direction).abs() - (other_l * sin + other_w * cos + w),
-            between.dot(other.direction).abs() - (l * cos + w * sin + other_l),
-            between.cross(other.direction).abs() - (l * sin + w * cos + other_w),
+            dot(&between, along).abs() - (other_l * cos + other_w * sin + l),
+            cross(&between, along).abs() - (other_l * sin + other_w * cos + w),
+            dot(&between, other_along).abs() - (l * cos + w * sin + other_l),
+            cross(&between, other_along).abs() - (l * sin + w * cos + other_w),
         ]
     }
 }
@@ -79,13 +96,14 @@ impl<R: Elementary> OrientedBox<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::{distance, unit};
     use core::f32::consts::{FRAC_1_SQRT_2, SQRT_2};
     use proptest::prelude::*;
 
     fn vehicle(x: f32, y: f32, heading: f32) -> OrientedBox {
         let pose = Pose {
             position: Point::new(x, y),
-            direction: Point::new(heading.cos(), heading.sin()),
+            direction: unit(heading.cos(), heading.sin()),
         };
         OrientedBox::new(pose, Footprint::PAPER)
     }
@@ -104,7 +122,7 @@ mod tests {
     fn a_corner_that_points_at_a_side() {
         // A 2 × 2 square turned by 45° has its corner √2 from its centre.
         let mut square = vehicle(0.0, 0.0, 0.0);
-        square.direction = Point::new(FRAC_1_SQRT_2, FRAC_1_SQRT_2);
+        square.direction = Vector::new(FRAC_1_SQRT_2, FRAC_1_SQRT_2);
         square.half_length = 1.0;
         let gap = |x| vehicle(x, 0.0, 0.0).separation(&square);
         assert!((gap(2.5 + SQRT_2 + 0.01) - 0.01).abs() < 1e-5);
@@ -128,11 +146,11 @@ mod tests {
             heading in -3.2_f32..3.2, other_heading in -3.2_f32..3.2,
         ) {
             let (a, b) = (vehicle(0.0, 0.0, heading), vehicle(x, y, other_heading));
-            let distance = a.centre.distance(b.centre);
+            let between = distance(&a.centre, &b.centre);
             prop_assert!((a.separation(&b) - b.separation(&a)).abs() < 1e-5);
             prop_assert_eq!(a.overlaps(&b), a.separation(&b) <= 0.0);
-            if distance < 2.0 { prop_assert!(a.overlaps(&b)); }
-            if distance > 29.0_f32.sqrt() + 1e-4 { prop_assert!(!a.overlaps(&b)); }
+            if between < 2.0 { prop_assert!(a.overlaps(&b)); }
+            if between > 29.0_f32.sqrt() + 1e-4 { prop_assert!(!a.overlaps(&b)); }
         }
     }
 }

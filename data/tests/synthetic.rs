@@ -1,5 +1,6 @@
 //! Synthetic traffic: what is written is read back, and what people do is plausible.
 
+use cede_controller::geometry::unit;
 use cede_controller::separation::OrientedBox;
 use cede_controller::{Footprint, Point, Pose};
 use cede_data::{Dataset, Split, Track, synthetic};
@@ -95,7 +96,7 @@ fn covered(track: &Track, time: u64) -> OrientedBox {
     let (sin, cos) = state.heading.sin_cos();
     let pose = Pose {
         position: Point::new(state.x as f32, state.y as f32),
-        direction: Point::new(cos as f32, sin as f32),
+        direction: unit(cos as f32, sin as f32),
     };
     let (length, width) = (track.length as f32, track.width as f32);
     OrientedBox::new(pose, Footprint { length, width })

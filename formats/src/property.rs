@@ -1,7 +1,8 @@
 //! Properties of a policy as a readable file: what the verifier proves and training can aim at.
 
+use cede_controller::geometry::unit;
 use cede_controller::{
-    ConflictKind, Footprint, Pair, Part, Point, Pose, Real, RightOfWay, VehicleState,
+    ConflictKind, Elementary, Footprint, Pair, Part, Point, Pose, RightOfWay, VehicleState,
 };
 use serde::{Deserialize, Serialize};
 
@@ -28,14 +29,14 @@ impl Setting {
 
     /// The same pair, its place in any number.
     #[must_use]
-    pub fn pair_of<R: Real>(&self, [d, v, other_d, other_v]: [R; 4]) -> Pair<R> {
+    pub fn pair_of<R: Elementary>(&self, [d, v, other_d, other_v]: [R; 4]) -> Pair<R> {
         let vehicle_state = |distance, speed, turn: f32| VehicleState {
             pose: Pose {
                 position: Point::new(R::of(0.0), R::of(0.0)),
-                direction: Point::new(1.0, 0.0),
+                direction: unit(1.0, 0.0),
             },
             // The feature is the sine of the angle from the direction to the exit.
-            exit: Point::new((1.0 - turn * turn).max(0.0).sqrt(), turn),
+            exit: unit((1.0 - turn * turn).max(0.0).sqrt(), turn),
             speed,
             distance,
             footprint: Footprint::PAPER,

@@ -9,6 +9,7 @@ mod processor;
 #[path = "../tests/scenes/mod.rs"]
 mod scenes;
 
+use cede_controller::geometry::unit;
 use cede_controller::kinematics::State;
 use cede_controller::policy::embedded;
 use cede_controller::separation::OrientedBox;
@@ -157,7 +158,7 @@ fn pairs() -> Vec<[Pose; 2]> {
         let heading: f32 = random.random_range(-3.2..3.2);
         Pose {
             position: Point::new(random.random_range(0.0..5.0), random.random_range(0.0..5.0)),
-            direction: Point::new(heading.cos(), heading.sin()),
+            direction: unit(heading.cos(), heading.sin()),
         }
     };
     (0..1024).map(|_| [pose(), pose()]).collect()

@@ -42,7 +42,7 @@ fn left_meets_oncoming(encounter: &Encounter) -> bool {
         left.route.pose(0.0).direction,
         other.route.pose(0.0).direction,
     );
-    left.manoeuvre == Manoeuvre::Left && other.manoeuvre != Manoeuvre::Left && a.dot(b) < -0.5
+    left.manoeuvre == Manoeuvre::Left && other.manoeuvre != Manoeuvre::Left && a.dot(&b) < -0.5
 }
 
 fn statistics(sets: &[(&str, Dataset)]) {

@@ -1,7 +1,7 @@
 //! Hand-made encounters for unit tests.
 
 use cede_controller::kinematics::STEP;
-use cede_controller::{ConflictKind, Footprint, Point};
+use cede_controller::{ConflictKind, Footprint, Point, Vector};
 use cede_data::encounter::{
     Encounter, EncounterId, Manoeuvre, Participant, Role, Sample, SimRoute,
 };
@@ -10,8 +10,8 @@ use cede_data::encounter::{
 /// Each starts `distance` m before its conflict point (5 m before the crossing) and is recorded at
 /// constant `speed` m/s for 20 s.
 pub(crate) fn crossing(left: [f32; 2], other: [f32; 2]) -> Encounter {
-    let east = participant(1, Manoeuvre::Left, Point::new(1.0, 0.0), left);
-    let north = participant(2, Manoeuvre::Straight, Point::new(0.0, 1.0), other);
+    let east = participant(1, Manoeuvre::Left, Vector::new(1.0, 0.0), left);
+    let north = participant(2, Manoeuvre::Straight, Vector::new(0.0, 1.0), other);
     let arrival = |[distance, speed]: [f32; 2]| (distance / speed / STEP).ceil();
     let (left, other) = (arrival(left), arrival(other));
     Encounter {
@@ -24,7 +24,7 @@ pub(crate) fn crossing(left: [f32; 2], other: [f32; 2]) -> Encounter {
         kind: ConflictKind::Crossing,
         start_ms: 0,
         steps: left.min(other) as u32,
-        conflict_point: Point::default(),
+        conflict_point: Point::origin(),
         first: if left <= other {
             Role::Left
         } else {
@@ -38,10 +38,11 @@ pub(crate) fn crossing(left: [f32; 2], other: [f32; 2]) -> Encounter {
 fn participant(
     track: u32,
     manoeuvre: Manoeuvre,
-    direction: Point,
+    direction: Vector,
     [distance, speed]: [f32; 2],
 ) -> Participant {
-    let route = SimRoute::new([direction * -100.0, direction * 100.0]).expect("a straight line");
+    let route = SimRoute::new([-100.0, 100.0].map(|s| Point::from(direction * s)))
+        .expect("a straight line");
     let conflict_s = 95.0;
     let record = (0..200_u8)
         .map(|step| Sample {

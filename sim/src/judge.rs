@@ -64,7 +64,7 @@ impl Judge {
             .iter()
             .flatten()
             .next()
-            .map_or(Point::default(), |pose| pose.position);
+            .map_or(Point::origin(), |pose| pose.position);
         for (&(body, collider), pose) in self.vehicles.iter().zip(poses) {
             if let Some(collider) = self.colliders.get_mut(collider)
                 && collider.is_enabled() != pose.is_some()
@@ -101,19 +101,20 @@ impl Judge {
 }
 
 fn placement(pose: &Pose, origin: Point) -> Placement {
-    let Point { x, y } = pose.position - origin;
+    let offset = pose.position - origin;
     let rotation = Rotation::from_cos_sin_unchecked(pose.direction.x, pose.direction.y);
-    Placement::from_parts(Vector::new(x, y), rotation)
+    Placement::from_parts(Vector::new(offset.x, offset.y), rotation)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use cede_controller::geometry::unit;
 
     fn at(x: f32, y: f32) -> Option<Pose> {
         Some(Pose {
             position: Point::new(x, y),
-            direction: Point::new(1.0, 0.0),
+            direction: unit(1.0, 0.0),
         })
     }
 

@@ -4,7 +4,7 @@ use crate::driver::scene;
 use cede_controller::RouteConflict;
 use cede_controller::kinematics::State;
 use cede_controller::{
-    ConflictKind, Footprint, NearbyVehicle, Pair, Path, Point, Scene, TrafficContext,
+    ConflictKind, Footprint, NearbyVehicle, Pair, Path, Scene, TrafficContext, UnitVector,
 };
 use cede_controller::{Part, RightOfWay, VehicleState};
 use cede_data::encounter::Encounter;
@@ -71,7 +71,7 @@ pub struct ObservationModel<'e> {
     pub encounter: &'e Encounter,
     kind: ConflictKind,
     conflicts: [f32; 2],
-    exits: [Point; 2],
+    exits: [UnitVector; 2],
     bystanders: [Bystanders; 2],
 }
 

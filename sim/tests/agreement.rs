@@ -8,6 +8,7 @@
 
 mod scenes;
 
+use cede_controller::geometry::{distance, length, unit};
 use cede_controller::separation::OrientedBox;
 use cede_controller::{Footprint, Point, Pose};
 use cede_sim::Judge;
@@ -48,7 +49,7 @@ type BoxTest = fn(&OrientedBox, &OrientedBox) -> bool;
 fn pose(x: f32, y: f32, heading: f32) -> Pose {
     Pose {
         position: Point::new(x, y),
-        direction: Point::new(heading.cos(), heading.sin()),
+        direction: unit(heading.cos(), heading.sin()),
     }
 }
 
@@ -60,7 +61,7 @@ fn grazing_pair(random: &mut Pcg64, margin: f32) -> [Pose; 2] {
     let a = pose(x, y, anywhere(3.2));
     let mut b = pose(x + anywhere(6.0), y + anywhere(6.0), anywhere(3.2));
     let away = b.position - a.position;
-    let away = away * (1.0 / away.norm().max(0.1));
+    let away = away * (1.0 / length(&away).max(0.1));
     let wanted = anywhere(margin);
     // Secant steps: the separation grows monotonically along `away`, with slope at most 1.
     for _ in 0..60 {
@@ -156,10 +157,10 @@ fn box_test_agrees_with_the_judge_on_grazing_vehicles() {
 fn wrong_box_tests_are_found_out() {
     let one_vehicle_s_axes_only: BoxTest = |a, b| {
         let d = b.centre - a.centre;
-        let cos = a.direction.dot(b.direction).abs();
-        let sin = a.direction.cross(b.direction).abs();
-        d.dot(a.direction).abs() <= a.half_length + b.half_length * cos + b.half_width * sin
-            && d.cross(a.direction).abs() <= a.half_width + b.half_length * sin + b.half_width * cos
+        let cos = a.direction.dot(&b.direction).abs();
+        let sin = a.direction.perp(&b.direction).abs();
+        d.dot(&a.direction).abs() <= a.half_length + b.half_length * cos + b.half_width * sin
+            && d.perp(&a.direction).abs() <= a.half_width + b.half_length * sin + b.half_width * cos
     };
     let a_centimetre_too_short: BoxTest = |a, b| {
         let shorter = |vehicle: &OrientedBox| OrientedBox {
@@ -168,7 +169,7 @@ fn wrong_box_tests_are_found_out() {
         };
         shorter(a).overlaps(&shorter(b))
     };
-    let circles: BoxTest = |a, b| a.centre.distance(b.centre) <= 2.0 * a.half_length;
+    let circles: BoxTest = |a, b| distance(&a.centre, &b.centre) <= 2.0 * a.half_length;
     let half_a_millimetre_too_wide: BoxTest = |a, b| a.separation(b) <= 5e-4;
     for wrong in [
         one_vehicle_s_axes_only,

@@ -6,7 +6,7 @@
 //! the ego's.
 
 use cede_controller::junction::zone::FAR;
-use cede_controller::{Footprint, Path, Point, Route, Scene, Span, Zone};
+use cede_controller::{Footprint, Path, Point, Route, Scene, Span, Vector, Zone};
 use cede_data::{Dataset, SimRoute};
 use geo::{ConvexHull, Coord, Intersects, MultiPoint, Polygon};
 use proptest::prelude::*;
@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 const PAPER: Footprint = Footprint::PAPER;
 
-fn corners(centre: Point, direction: Point) -> [Coord<f64>; 4] {
+fn corners(centre: Point, direction: Vector) -> [Coord<f64>; 4] {
     let (c, d) = (
         (centre.x.into(), centre.y.into()),
         (direction.x, direction.y),
@@ -54,7 +54,7 @@ fn occupied<const P: usize>(route: &Route<P>, sweep: &[Polygon<f64>], step: f32)
     let count = (route.length() / step) as usize;
     let meets = |s: &f32| {
         let pose = route.pose(*s);
-        let vehicle = hull(corners(pose.position, pose.direction));
+        let vehicle = hull(corners(pose.position, pose.direction.into_inner()));
         sweep.iter().any(|piece| piece.intersects(&vehicle))
     };
     (0..=count).map(|i| i as f32 * step).filter(meets).collect()
@@ -124,7 +124,7 @@ fn curve(x: f32, y: f32, heading: f32, curvature: f32, wobble: f32) -> Route<64>
         for i in 0..20_u8 {
             let s = f32::from(i) * 1.5;
             let angle = heading + sign * s * (curvature + wobble * (0.3 * s).sin());
-            at = at + Point::new(angle.cos(), angle.sin()) * (sign * 1.5);
+            at += Vector::new(angle.cos(), angle.sin()) * (sign * 1.5);
             half.push(at);
         }
         if sign < 0.0 {
@@ -168,7 +168,7 @@ proptest! {
         let path = |route| Path { route, footprint: PAPER };
         let scene = Scene::<1>::new(path(&ego), &[path(&other)]).unwrap();
         let (s, t) = (s * ego.length(), t * other.length());
-        let cover = |pose: cede_controller::Pose| hull(corners(pose.position, pose.direction));
+        let cover = |pose: cede_controller::Pose| hull(corners(pose.position, pose.direction.into_inner()));
         if cover(ego.pose(s)).intersects(&cover(other.pose(t))) {
             let inside = |z: &Zone| z.ego.contains(s) && z.other.contains(t) && z.lead.contains(s - t);
             prop_assert!(scene.conflicts()[0].zones().any(inside));

@@ -1,6 +1,6 @@
 //! A vehicle's path through the intersection: a polyline of fixed capacity, addressed by arc length.
 
-use crate::geometry::{Point, Pose};
+use crate::geometry::{Point, Pose, distance, unit};
 use heapless::Vec;
 
 /// A polyline of at most `P` points, addressed by arc length `s` in metres from its first point.
@@ -71,7 +71,7 @@ impl<const P: usize> Route<P> {
         }
         let s = match (self.points.last(), self.arc.last()) {
             (Some(&last), Some(&s)) => {
-                let step = last.distance(point);
+                let step = distance(&last, &point);
                 if step < Self::MIN_SPACING {
                     return Ok(());
                 }
@@ -120,13 +120,13 @@ impl<const P: usize> Route<P> {
                 let direction = (b - a) * (1.0 / (sb - sa));
                 Pose {
                     position: a + direction * (s - sa),
-                    direction,
+                    direction: unit(direction.x, direction.y),
                 }
             }
             // Unreachable: `new` keeps two points at least.
             _ => Pose {
-                position: Point::default(),
-                direction: Point::new(1.0, 0.0),
+                position: Point::origin(),
+                direction: unit(1.0, 0.0),
             },
         }
     }
@@ -141,10 +141,10 @@ impl<const P: usize> Route<P> {
         let arcs = self.arc.iter().zip(self.arc.iter().skip(1));
         for ((&a, &b), (&sa, &sb)) in ends.zip(arcs) {
             let direction = (b - a) * (1.0 / (sb - sa));
-            let along = (point - a).dot(direction).clamp(0.0, sb - sa);
-            let distance = (a + direction * along).distance(point);
-            if distance < best.0 {
-                best = (distance, sa + along);
+            let along = (point - a).dot(&direction).clamp(0.0, sb - sa);
+            let away = distance(&(a + direction * along), &point);
+            if away < best.0 {
+                best = (away, sa + along);
             }
         }
         best.1
@@ -172,7 +172,7 @@ mod tests {
         assert_eq!(route.pose(12.0).position, Point::new(10.0, 2.0));
         assert_eq!(route.pose(-1.0).position, Point::new(-1.0, 0.0));
         assert_eq!(route.pose(16.0).position, Point::new(10.0, 6.0));
-        assert_eq!(route.pose(12.0).direction, Point::new(0.0, 1.0));
+        assert_eq!(route.pose(12.0).direction, unit(0.0, 1.0));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The conflict geometry of the ego's route with those of the others, prepared once.
 
-use crate::geometry::{Footprint, Point};
+use crate::geometry::{Footprint, Point, UnitVector};
 use crate::junction::conflict::ConflictKind;
 use crate::junction::route::Route;
 use crate::junction::zone::{Zone, Zones, zones};
@@ -55,7 +55,7 @@ pub struct RouteConflict {
     /// The same for the other.
     pub other_conflict: f32,
     /// Unit vector in which the other's route ends.
-    pub other_exit: Point,
+    pub other_exit: UnitVector,
     /// The other's footprint.
     pub other_footprint: Footprint,
     /// Who goes first if both arrive at once; unsettled unless [`Scene::set_right_of_way`] says so.
@@ -93,7 +93,7 @@ pub struct Scene<const N: usize> {
     /// The ego's footprint.
     footprint: Footprint,
     /// Unit vector in which the ego's route ends.
-    exit: Point,
+    exit: UnitVector,
     conflicts: Vec<RouteConflict, N>,
 }
 
@@ -185,7 +185,7 @@ impl<const N: usize> Scene<N> {
 
     /// Unit vector in which the ego's route ends.
     #[must_use]
-    pub const fn exit(&self) -> Point {
+    pub const fn exit(&self) -> UnitVector {
         self.exit
     }
 
@@ -250,7 +250,7 @@ fn within(value: f32, length: f32) -> f32 {
     }
 }
 
-fn exit<const P: usize>(route: &Route<P>) -> Point {
+fn exit<const P: usize>(route: &Route<P>) -> UnitVector {
     route.pose(route.length()).direction
 }
 
@@ -281,8 +281,8 @@ fn crossing<const P: usize>(a: &Route<P>, b: &Route<P>) -> Option<Point> {
 /// Where the open segment from `p` to `q` crosses that from `r` to `s`, as a fraction of `p` to `q`.
 fn cross(p: Point, q: Point, r: Point, s: Point) -> Option<f32> {
     let (along, across) = (q - p, s - r);
-    let (side_p, side_q) = (across.cross(p - r), across.cross(q - r));
-    let (side_r, side_s) = (along.cross(r - p), along.cross(s - p));
+    let (side_p, side_q) = (across.perp(&(p - r)), across.perp(&(q - r)));
+    let (side_r, side_s) = (along.perp(&(r - p)), along.perp(&(s - p)));
     // A crossing in a corner of a polyline belongs to the segment that begins there.
     let crosses = |from: f32, to: f32| (from >= 0.0) != (to >= 0.0);
     (crosses(side_p, side_q) && crosses(side_r, side_s)).then(|| side_p / (side_p - side_q))
@@ -295,14 +295,14 @@ fn reach<const P: usize>(route: &Route<P>, point: Point) -> f32 {
         let direction = (b - a) * (1.0 / (to - from));
         // |a + direction·x − point| = radius, solved for the smaller x.
         let offset = a - point;
-        let half = offset.dot(direction);
-        let rest = offset.dot(offset) - CONFLICT_RADIUS * CONFLICT_RADIUS;
+        let half = offset.dot(&direction);
+        let rest = offset.dot(&offset) - CONFLICT_RADIUS * CONFLICT_RADIUS;
         if rest <= 0.0 {
             return from;
         }
-        let discriminant = half * half - rest * direction.dot(direction);
+        let discriminant = half * half - rest * direction.dot(&direction);
         if discriminant >= 0.0 {
-            let x = (-half - libm::sqrtf(discriminant)) / direction.dot(direction);
+            let x = (-half - libm::sqrtf(discriminant)) / direction.dot(&direction);
             if x >= 0.0 && x <= to - from {
                 return from + x;
             }
@@ -314,6 +314,7 @@ fn reach<const P: usize>(route: &Route<P>, point: Point) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::unit;
 
     fn path(route: &Route<8>) -> Path<'_, 8> {
         Path {
@@ -334,8 +335,8 @@ mod tests {
         let conflict = scene.conflicts()[0];
         assert!((conflict.ego_conflict - 37.0).abs() < 1e-4);
         assert!((conflict.other_conflict - 35.0).abs() < 1e-4);
-        assert_eq!(conflict.other_exit, Point::new(-1.0, 0.0));
-        assert_eq!(scene.exit(), Point::new(0.0, 1.0));
+        assert_eq!(conflict.other_exit, unit(-1.0, 0.0));
+        assert_eq!(scene.exit(), unit(0.0, 1.0));
     }
 
     #[test]

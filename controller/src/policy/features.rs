@@ -2,7 +2,7 @@
 
 use crate::junction::conflict::ConflictKind;
 use crate::policy::pair::{Crosser, Leader, Pair, RightOfWay, VehicleState};
-use crate::real::{Elementary, Real};
+use crate::real::Elementary;
 
 /// Most features that a set has.
 pub const MAX_FEATURES: usize = 19;
@@ -170,7 +170,7 @@ fn fill<R>(features: &mut [R; MAX_FEATURES], values: impl IntoIterator<Item = R>
     }
 }
 
-fn raw<R: Real>(pair: &Pair<R>) -> [R; 8] {
+fn raw<R: Elementary>(pair: &Pair<R>) -> [R; 8] {
     let heading = |p: &VehicleState<R>| {
         let direction = p.pose.direction;
         R::of(libm::atan2f(direction.y, direction.x))
@@ -191,7 +191,7 @@ fn raw<R: Real>(pair: &Pair<R>) -> [R; 8] {
 
 fn route<R: Elementary>(pair: &Pair<R>) -> [R; 14] {
     let flag = |kind| R::of(if pair.kind == kind { 1.0 } else { 0.0 });
-    let turn = |p: &VehicleState<R>| R::of(p.pose.direction.cross(p.exit));
+    let turn = |p: &VehicleState<R>| R::of(p.pose.direction.perp(&p.exit));
     let (a, b) = (&pair.ego, &pair.other);
     [
         a.distance,

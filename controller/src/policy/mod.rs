@@ -104,7 +104,7 @@ impl<'a> From<Weights<'a>> for Policy<'a> {
 mod tests {
     extern crate std;
     use super::*;
-    use crate::geometry::{Footprint, Point, Pose};
+    use crate::geometry::{Footprint, Point, Pose, unit};
     use crate::junction::conflict::ConflictKind;
     use crate::policy::features::FeatureSet;
     use crate::policy::pair::testing::pair;
@@ -133,8 +133,8 @@ mod tests {
         fn any_party()(bits in any::<[u32; 12]>(), follows in any::<bool>()) -> VehicleState {
             let [x, y, dx, dy, ex, ey, speed, distance, length, width, gap, leads] = bits.map(f32::from_bits);
             VehicleState {
-                pose: Pose { position: Point::new(x, y), direction: Point::new(dx, dy) },
-                exit: Point::new(ex, ey),
+                pose: Pose { position: Point::new(x, y), direction: unit(dx, dy) },
+                exit: unit(ex, ey),
                 speed,
                 distance,
                 footprint: Footprint { length, width },

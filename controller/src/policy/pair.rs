@@ -1,17 +1,18 @@
 //! The ego and one other vehicle, as the policy sees them.
 
-use crate::geometry::{Footprint, Point, Pose};
+use crate::geometry::{Footprint, Pose, UnitVector};
 use crate::junction::conflict::ConflictKind;
 use crate::real::Elementary;
 use core::f32::consts::FRAC_PI_2;
+use nalgebra::Scalar;
 
 /// One vehicle of a [`Pair`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct VehicleState<R = f32> {
+pub struct VehicleState<R: Scalar = f32> {
     /// Where it is and where it points.
     pub pose: Pose<R>,
     /// Unit vector of the direction in which its route ends: left of `pose.direction` for a left-turner.
-    pub exit: Point,
+    pub exit: UnitVector,
     /// Speed in m/s, never negative.
     pub speed: R,
     /// Metres along its route to its conflict point with the other; negative once past it.
@@ -67,7 +68,7 @@ pub enum Part {
 
 /// The ego and one other vehicle whose routes conflict.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pair<R = f32> {
+pub struct Pair<R: Scalar = f32> {
     /// The vehicle that is driven.
     pub ego: VehicleState<R>,
     /// The vehicle that it meets.
@@ -122,6 +123,7 @@ impl<R: Elementary> Pair<R> {
 #[cfg(test)]
 pub(crate) mod testing {
     use super::*;
+    use crate::geometry::{Point, unit};
 
     /// A left-turner 12 m before the conflict point at 6 m/s, the oncoming other 20 m before it at 8 m/s.
     pub(crate) fn pair() -> Pair {
@@ -137,11 +139,7 @@ pub(crate) mod testing {
             leader: None,
             crosser: None,
         };
-        let (east, north, west) = (
-            Point::new(1.0, 0.0),
-            Point::new(0.0, 1.0),
-            Point::new(-1.0, 0.0),
-        );
+        let (east, north, west) = (unit(1.0, 0.0), unit(0.0, 1.0), unit(-1.0, 0.0));
         Pair {
             ego: vehicle_state(-12.0, 0.0, east, north, 6.0, 12.0),
             other: vehicle_state(20.0, 3.0, west, west, 8.0, 20.0),

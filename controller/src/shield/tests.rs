@@ -1,7 +1,7 @@
 //! Properties of the shield on its own: total, dimensionless, symmetric, monotone; and what it says.
 
 use super::*;
-use crate::geometry::{Footprint, Point, Pose};
+use crate::geometry::{Footprint, Point, Pose, unit};
 use crate::junction::route::Route;
 use crate::junction::scene::Path;
 use crate::junction::zone::Span;
@@ -45,7 +45,7 @@ fn crossing() -> Scene<2> {
 fn vehicle(s: f32, speed: f32) -> Vehicle {
     let pose = Pose {
         position: Point::new(0.0, 0.0),
-        direction: Point::new(1.0, 0.0),
+        direction: unit(1.0, 0.0),
     };
     Vehicle { s, speed, pose }
 }
@@ -371,7 +371,7 @@ fn scaled(mut scene: Scene<2>, mut contract: Contract, factor: f32) -> (Scene<2>
 prop_compose! {
     fn any_vehicle()(bits in any::<[u32; 6]>()) -> Vehicle {
         let [s, speed, x, y, dx, dy] = bits.map(f32::from_bits);
-        let pose = Pose { position: Point::new(x, y), direction: Point::new(dx, dy) };
+        let pose = Pose { position: Point::new(x, y), direction: unit(dx, dy) };
         Vehicle { s, speed, pose }
     }
 }

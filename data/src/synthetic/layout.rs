@@ -5,7 +5,7 @@ use super::plan::{Class, Control, Purpose, class_of, name_of, stream};
 use super::profile::SpeedProfile;
 use super::zone::{RouteRelation, parting, zone};
 use crate::encounter::{Manoeuvre, SimRoute};
-use cede_controller::Point;
+use cede_controller::geometry::{Point, Vector, distance};
 use rand::RngExt;
 use rand_pcg::Pcg64;
 
@@ -13,7 +13,7 @@ use rand_pcg::Pcg64;
 #[derive(Clone, Debug)]
 pub(super) struct Arm {
     /// Unit vector from the centre outwards.
-    pub(super) outward: Point,
+    pub(super) outward: Vector,
     /// Width of each of its lanes, m.
     pub(super) lane_width: f32,
     /// From the centre to its stop line, m.
@@ -74,8 +74,8 @@ pub(super) const CENTRE: Point = Point::new(1000.0, 1000.0);
 
 impl Arm {
     /// Offset of the lane's centre from the road's axis: traffic keeps to the right.
-    fn lane(&self, direction: Point) -> Point {
-        Point::new(direction.y, -direction.x) * (0.5 * self.lane_width)
+    fn lane(&self, direction: Vector) -> Vector {
+        Vector::new(direction.y, -direction.x) * (0.5 * self.lane_width)
     }
 
     /// The point of the lane towards the centre, `distance` m from it.
@@ -167,7 +167,7 @@ impl Layout {
                 }
                 let oncoming = self.arms[own.from]
                     .outward
-                    .dot(self.arms[theirs.from].outward)
+                    .dot(&self.arms[theirs.from].outward)
                     < -0.5;
                 if (oncoming && own.manoeuvre == Manoeuvre::Left) || rng.random_bool(SHARE) {
                     conflicts.push(Conflict {
@@ -210,7 +210,7 @@ impl Style {
         // Some arms are much busier than others.
         let uneven: f32 = rng.random_range(0.35..1.2);
         Arm {
-            outward: Point::new(libm::cosf(angle), libm::sinf(angle)),
+            outward: Vector::new(libm::cosf(angle), libm::sinf(angle)),
             lane_width: rng.random_range(3.3..4.0),
             line,
             edge: line + rng.random_range(20.0..50.0),
@@ -240,7 +240,7 @@ fn draw_movement(
 ) -> Option<Movement> {
     let (a, b) = (&arms[from], &arms[to]);
     let (entry, exit) = (a.outward * -1.0, b.outward);
-    let turn = libm::atan2f(entry.cross(exit), entry.dot(exit)).to_degrees();
+    let turn = libm::atan2f(entry.perp(&exit), entry.dot(&exit)).to_degrees();
     let manoeuvre = match turn {
         50.0..=130.0 => Manoeuvre::Left,
         -40.0..=40.0 => Manoeuvre::Straight,
@@ -270,13 +270,15 @@ fn draw_movement(
 }
 
 /// A cubic Bézier curve from `a` in direction `u` to `b` in direction `w`; close to a circle's arc.
-pub(super) fn curve(a: Point, u: Point, b: Point, w: Point) -> impl Iterator<Item = Point> {
+pub(super) fn curve(a: Point, u: Vector, b: Point, w: Vector) -> impl Iterator<Item = Point> {
     const PIECES: u8 = 24;
-    let handle = 0.39 * a.distance(b);
-    let (c, d) = (a + u * handle, b - w * handle);
+    let handle = 0.39 * distance(&a, &b);
+    let control = [a, a + u * handle, b - w * handle, b].map(|point| point.coords);
     (0..=PIECES).map(move |i| {
         let t = f32::from(i) / f32::from(PIECES);
         let r = 1.0 - t;
-        a * (r * r * r) + c * (3.0 * r * r * t) + d * (3.0 * r * t * t) + b * (t * t * t)
+        let [a, c, d, b] = control;
+        let at = a * (r * r * r) + c * (3.0 * r * r * t) + d * (3.0 * r * t * t) + b * (t * t * t);
+        Point::from(at)
     })
 }

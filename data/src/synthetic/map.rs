@@ -2,7 +2,7 @@
 
 use super::layout::{Arm, CENTRE, Layout, Movement, curve};
 use crate::projection::to_degrees;
-use cede_controller::Point;
+use cede_controller::{Point, Vector};
 use std::fmt::Write;
 
 /// Spacing (m) of the points of a lane's bounds.
@@ -64,7 +64,7 @@ impl Layout {
 impl Arm {
     /// The point `out` m from the centre and `aside` m to the left of the axis, seen outwards.
     fn across(&self, out: f32, aside: f32) -> Point {
-        CENTRE + self.outward * out + Point::new(-self.outward.y, self.outward.x) * aside
+        CENTRE + self.outward * out + Vector::new(-self.outward.y, self.outward.x) * aside
     }
 }
 
@@ -86,7 +86,7 @@ fn bounds(movement: &Movement, half_width: f32) -> [Vec<Point>; 2] {
             .map(|i| {
                 let pose = route.pose(route.length() * f32::from(i) / f32::from(count));
                 pose.position
-                    + Point::new(-pose.direction.y, pose.direction.x) * (sign * half_width)
+                    + Vector::new(-pose.direction.y, pose.direction.x) * (sign * half_width)
             })
             .collect()
     };

@@ -56,8 +56,8 @@ impl SpeedProfile {
 fn in_curve(route: &SimRoute, s: f32) -> f32 {
     let (before, after) = (route.pose(s - HALF_STRETCH), route.pose(s + HALF_STRETCH));
     let turn = libm::atan2f(
-        before.direction.cross(after.direction),
-        before.direction.dot(after.direction),
+        before.direction.perp(&after.direction),
+        before.direction.dot(&after.direction),
     );
     let curvature = turn.abs() / (2.0 * HALF_STRETCH);
     libm::sqrtf(CORNERING / curvature.max(1e-3))

@@ -35,7 +35,7 @@ impl Layout {
     fn gives_way_aside(&self, own: &Movement, other: &Movement) -> bool {
         let side = self.arms[own.from]
             .outward
-            .cross(self.arms[other.from].outward);
+            .perp(&self.arms[other.from].outward);
         let left = |m: &Movement| m.manoeuvre == Manoeuvre::Left;
         side > 0.5 || (side > -0.5 && left(own) && !left(other))
     }

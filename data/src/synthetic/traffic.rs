@@ -4,8 +4,9 @@ use super::human::{Character, Human, Leader, Right, Rival, Situation};
 use super::layout::{Layout, Movement};
 use super::zone::RouteRelation;
 use crate::{RawState, STEP_MS, Track};
+use cede_controller::geometry::length;
 use cede_controller::kinematics::{STEP, State, advance};
-use cede_controller::{Footprint, Point};
+use cede_controller::{Footprint, Point, Vector};
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Exp1, StandardNormal};
 use rand_pcg::Pcg64;
@@ -321,7 +322,7 @@ impl Vehicle {
             self.position(movement, s - 0.5),
             self.position(movement, s + 0.5),
         );
-        let direction = (ahead - behind) * (1.0 / (ahead - behind).norm());
+        let direction = (ahead - behind) * (1.0 / length(&(ahead - behind)));
         let position = self.position(movement, s);
         self.states.push(RawState {
             x: round(position.x),
@@ -345,7 +346,7 @@ impl Vehicle {
                 (s - middle) / (movement.route.length() - middle),
             )
         };
-        pose.position + Point::new(-pose.direction.y, pose.direction.x) * aside
+        pose.position + Vector::new(-pose.direction.y, pose.direction.x) * aside
     }
 
     fn into_track(self) -> Option<Track> {

@@ -2,6 +2,7 @@
 
 use crate::encounter::SimRoute;
 use cede_controller::Footprint;
+use cede_controller::geometry::distance;
 use cede_controller::separation::OrientedBox;
 
 /// How one movement meets another.
@@ -36,7 +37,7 @@ const SPACING: f32 = 0.5;
 
 /// Arc length (m) up to which two routes from one start lie side by side.
 pub(crate) fn parting(own: &SimRoute, other: &SimRoute) -> f32 {
-    let aside = |s: f32| own.pose(s).position.distance(other.pose(s).position);
+    let aside = |s: f32| distance(&own.pose(s).position, &other.pose(s).position);
     let parted = samples(own.length()).find(|&s| aside(s) > ROOMY.width);
     parted.unwrap_or(own.length())
 }
@@ -55,7 +56,7 @@ pub fn zone(own: &SimRoute, other: &SimRoute, merging: bool) -> Option<Zone> {
     for (i, a) in ours.iter().enumerate() {
         for (j, b) in theirs.iter().enumerate() {
             let between = a.centre - b.centre;
-            if between.dot(between) < reach * reach && a.overlaps(b) {
+            if between.dot(&between) < reach * reach && a.overlaps(b) {
                 own_range.include(i);
                 other_range.include(j);
             }
@@ -76,7 +77,7 @@ pub fn zone(own: &SimRoute, other: &SimRoute, merging: bool) -> Option<Zone> {
 /// How long (m) a stretch at the end of both routes is one lane.
 fn one_lane_rest(own: &SimRoute, other: &SimRoute) -> f32 {
     let at = |route: &SimRoute, rest: f32| route.pose(route.length() - rest).position;
-    let apart = |rest: f32| at(own, rest).distance(at(other, rest)) > ONE_LANE;
+    let apart = |rest: f32| distance(&at(own, rest), &at(other, rest)) > ONE_LANE;
     samples(own.length().min(other.length()))
         .find(|&rest| apart(rest))
         .unwrap_or(0.0)

@@ -1,8 +1,8 @@
 //! Encounters prepared for stepping: all routes as one list of segments, all recorded SVOs as one list of angles.
 
+use cede_controller::geometry::{Footprint, Point, Vector, length};
 use cede_controller::kinematics::State;
 use cede_controller::policy::svo::svo;
-use cede_controller::{Footprint, Point};
 use cede_data::encounter::{Encounter, Participant, Role};
 use core::f32::consts::FRAC_PI_4;
 use thiserror::Error;
@@ -28,7 +28,7 @@ pub enum LibraryError {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Segment {
     pub(super) from: Point,
-    pub(super) direction: Point,
+    pub(super) direction: Vector,
     /// Arc lengths at its ends (m); the last of a route ends at infinity.
     pub(super) start: f32,
     pub(super) end: f32,
@@ -81,7 +81,7 @@ impl Library {
     /// See [`LibraryError`].
     pub fn new(encounters: &[Encounter], footprint: Footprint) -> Result<Self, LibraryError> {
         // The diagonal, and a millimetre for rounding.
-        let reach = Point::new(footprint.length, footprint.width).norm() + 1e-3;
+        let reach = length(&Vector::new(footprint.length, footprint.width)) + 1e-3;
         let mut library = Self {
             footprint,
             reach_squared: reach * reach,

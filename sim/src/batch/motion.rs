@@ -4,9 +4,10 @@ use super::library::{Library, Track};
 use super::{LANES, Lanes};
 use crate::stepper::Eight;
 use cede_controller::Real;
+use cede_controller::geometry::unit;
 use cede_controller::kinematics::State;
 use cede_controller::separation::OrientedBox;
-use cede_controller::{Footprint, Point, Pose};
+use cede_controller::{Footprint, Point, Pose, Vector};
 
 /// One vehicle of each of the encounters that a block steps together; entry `i` of each array
 /// belongs to encounter `i`.
@@ -67,7 +68,7 @@ impl Motion {
     pub fn pose(&self, lane: usize) -> Pose {
         Pose {
             position: Point::new(self.x[lane], self.y[lane]),
-            direction: Point::new(self.cos[lane], self.sin[lane]),
+            direction: unit(self.cos[lane], self.sin[lane]),
         }
     }
 
@@ -76,7 +77,7 @@ impl Motion {
     pub(super) fn outlines(&self, footprint: Footprint) -> OrientedBox<Eight> {
         OrientedBox {
             centre: Point::new(self.x.into(), self.y.into()),
-            direction: Point::new(self.cos.into(), self.sin.into()),
+            direction: Vector::new(self.cos.into(), self.sin.into()),
             half_length: Eight::of(0.5 * footprint.length),
             half_width: Eight::of(0.5 * footprint.width),
         }

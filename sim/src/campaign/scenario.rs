@@ -5,7 +5,8 @@ use cede_controller::kinematics::State;
 use cede_controller::separation::OrientedBox;
 use cede_controller::shield::margin::safe_gap;
 use cede_controller::{
-    Contract, ContractBuilder, Footprint, Path, Point, Precedence, RightOfWay, Route, Scene, Zone,
+    Contract, ContractBuilder, Footprint, Path, Point, Precedence, RightOfWay, Route, Scene,
+    Vector, Zone,
 };
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -129,7 +130,7 @@ pub struct Scenario {
 #[derive(Clone, Copy)]
 struct Gate {
     at: Point,
-    outward: Point,
+    outward: Vector,
 }
 
 /// How often a place for a vehicle is looked for.
@@ -311,16 +312,17 @@ impl Layout {
     /// The lane of arm `arm` that enters (`side` = −1) or leaves (`side` = 1), on the right-hand side.
     fn gate(&self, arm: usize, side: f32) -> Gate {
         let angle = self.arms[arm];
-        let outward = Point::new(angle.cos(), angle.sin());
-        let right = Point::new(outward.y, -outward.x);
+        let outward = Vector::new(angle.cos(), angle.sin());
+        let right = Vector::new(outward.y, -outward.x);
         Gate {
-            at: outward * self.radius + right * (side * self.offset),
+            at: Point::from(outward * self.radius + right * (side * self.offset)),
             outward,
         }
     }
 }
 
-fn bezier([a, b, c, d]: [Point; 4], t: f32) -> Point {
+fn bezier(control: [Point; 4], t: f32) -> Point {
+    let [a, b, c, d] = control.map(|point| point.coords);
     let u = 1.0 - t;
-    a * (u * u * u) + b * (3.0 * u * u * t) + c * (3.0 * u * t * t) + d * (t * t * t)
+    Point::from(a * (u * u * u) + b * (3.0 * u * u * t) + c * (3.0 * u * t * t) + d * (t * t * t))
 }

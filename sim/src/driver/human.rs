@@ -1,7 +1,7 @@
 //! The human driver of the synthetic scenarios, in anybody's encounter.
 
 use super::{Driver, DriverFactory, View, idm};
-use cede_controller::Point;
+use cede_controller::UnitVector;
 use cede_controller::kinematics::STEP;
 use cede_controller::kinematics::State;
 use cede_data::encounter::{Encounter, Participant};
@@ -114,19 +114,19 @@ impl AtCrossing {
 /// How `other` crosses the way of `own`; `None` if it does not, or drives in the same lane.
 fn meet(own: &Participant, other: &Participant, earlier: bool) -> Option<Other> {
     let mut zone = zone(&own.route, &other.route, false)?;
-    let directions = |a: f32, b: f32| -> (Point, Point) {
+    let directions = |a: f32, b: f32| -> (UnitVector, UnitVector) {
         (own.route.pose(a).direction, other.route.pose(b).direction)
     };
     let (ours, theirs) = directions(zone.own.0, zone.other.0);
-    if ours.dot(theirs) > 0.8 {
+    if ours.dot(&theirs) > 0.8 {
         return None;
     }
     let (leaving, theirs_leaving) = directions(zone.own.1, zone.other.1);
-    if leaving.dot(theirs_leaving) > 0.8 {
+    if leaving.dot(&theirs_leaving) > 0.8 {
         zone.own.1 = zone.own.1.min(zone.own.0 + MERGE);
         zone.other.1 = zone.other.1.min(zone.other.0 + MERGE);
     }
-    let aside = ours.cross(theirs);
+    let aside = ours.perp(&theirs);
     // Coming towards each other: the other judged vehicle goes before the left-turner.
     let has_right = aside > 0.5 || (aside > -0.5 && !earlier);
     Some(Other {

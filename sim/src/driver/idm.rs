@@ -1,6 +1,7 @@
 //! The intelligent driver model with stop-sign behaviour.
 
 use super::{Driver, DriverFactory, View};
+use cede_controller::geometry::distance;
 use cede_controller::kinematics::STEP;
 use cede_controller::kinematics::State;
 use cede_data::encounter::{Encounter, Participant};
@@ -129,8 +130,8 @@ pub(super) fn leader(view: &View<'_>) -> Option<(f32, f32)> {
         let pose = vehicle.route.pose(theirs.s);
         let s = own.route.project(pose.position);
         let lane = own.route.pose(s);
-        let beside = lane.position.distance(pose.position) > 1.5;
-        let crossing = lane.direction.dot(pose.direction) < 0.7;
+        let beside = distance(&lane.position, &pose.position) > 1.5;
+        let crossing = lane.direction.dot(&pose.direction) < 0.7;
         if s <= state.s || beside || crossing {
             continue;
         }

@@ -1,6 +1,7 @@
 //! Time to collision: when the two would touch if both kept their speeds.
 
 use cede_controller::Footprint;
+use cede_controller::geometry::distance;
 use cede_controller::kinematics::{STEP, State};
 use cede_controller::separation::OrientedBox;
 use cede_data::encounter::{Encounter, Role};
@@ -31,7 +32,7 @@ fn touch(encounter: &Encounter, states: [State; 2], ahead: u32) -> bool {
         let state = states[role as usize];
         encounter.judged(role).route.pose(state.s + state.v * time)
     });
-    left.position.distance(other.position) < REACH
+    distance(&left.position, &other.position) < REACH
         && OrientedBox::new(left, Footprint::PAPER)
             .overlaps(&OrientedBox::new(other, Footprint::PAPER))
 }

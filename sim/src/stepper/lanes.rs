@@ -9,7 +9,7 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 use wide::f32x8;
 
 /// Eight numbers, computed with together.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Eight(f32x8);
 
 impl Eight {
@@ -180,6 +180,7 @@ mod tests {
     use super::*;
     use crate::reward::svo_deviation;
     use crate::stepper::{Goal, step};
+    use cede_controller::geometry::{Vector, unit};
     use cede_controller::kinematics::{State, advance, clamp_acceleration};
     use cede_controller::policy::svo::svo;
     use cede_controller::separation::OrientedBox;
@@ -278,7 +279,7 @@ mod tests {
     fn pose(x: f32, y: f32, heading: f32) -> Pose {
         Pose {
             position: Point::new(x, y),
-            direction: Point::new(heading.cos(), heading.sin()),
+            direction: unit(heading.cos(), heading.sin()),
         }
     }
 
@@ -288,7 +289,7 @@ mod tests {
         let of = |number: fn(&Pose) -> f32| Eight::from(poses.map(|pose| number(&pose)));
         OrientedBox {
             centre: Point::new(of(|p| p.position.x), of(|p| p.position.y)),
-            direction: Point::new(of(|p| p.direction.x), of(|p| p.direction.y)),
+            direction: Vector::new(of(|p| p.direction.x), of(|p| p.direction.y)),
             half_length: Eight::of(outline.half_length),
             half_width: Eight::of(outline.half_width),
         }

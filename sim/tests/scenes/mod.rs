@@ -149,7 +149,7 @@ fn right_turn(radius: f32, offset: f32) -> Vec<Point> {
 }
 
 fn route(points: Vec<Point>) -> SimRoute {
-    SimRoute::new(points.into_iter().map(|p| p + ORIGIN)).unwrap()
+    SimRoute::new(points.into_iter().map(|p| ORIGIN + p.coords)).unwrap()
 }
 
 /// First point of `a` that lies on `b`.
@@ -157,9 +157,9 @@ fn crossing(a: &SimRoute, b: &SimRoute) -> Point {
     for ends in a.points().windows(2) {
         for others in b.points().windows(2) {
             let (along, other) = (ends[1] - ends[0], others[1] - others[0]);
-            let area = along.cross(other);
-            let t = (others[0] - ends[0]).cross(other) / area;
-            let u = (others[0] - ends[0]).cross(along) / area;
+            let area = along.perp(&other);
+            let t = (others[0] - ends[0]).perp(&other) / area;
+            let u = (others[0] - ends[0]).perp(&along) / area;
             if (0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&u) {
                 return ends[0] + along * t;
             }

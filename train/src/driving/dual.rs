@@ -170,8 +170,8 @@ impl Elementary for Dual {
 mod tests {
     use super::*;
     use cede_controller::OrientedBox;
+    use cede_controller::geometry::{Footprint, Point, Pose, Vector, unit};
     use cede_controller::kinematics::{State, advance};
-    use cede_controller::{Footprint, Point, Pose};
 
     /// The derivatives of `of` at `x` beside finite differences.
     fn holds(of: impl Fn([Dual; 2]) -> Dual, x: [f32; 2]) {
@@ -226,13 +226,13 @@ mod tests {
         let fixed = OrientedBox::new(
             Pose {
                 position: Point::new(0.0, 0.0),
-                direction: Point::new(1.0, 0.0),
+                direction: unit(1.0, 0.0),
             },
             Footprint::PAPER,
         );
         let dual = |b: OrientedBox, centre: Point<Dual>| OrientedBox {
             centre,
-            direction: Point::new(Dual::of(b.direction.x), Dual::of(b.direction.y)),
+            direction: Vector::new(Dual::of(b.direction.x), Dual::of(b.direction.y)),
             half_length: Dual::of(b.half_length),
             half_width: Dual::of(b.half_width),
         };

@@ -59,16 +59,16 @@ fn moving(vehicle: &VehicleState, distance: usize) -> VehicleState<Dual> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cede_controller::{ConflictKind, Footprint, Point, Pose};
-    use cede_controller::{Part, RightOfWay};
+    use cede_controller::geometry::{UnitVector, unit};
+    use cede_controller::{ConflictKind, Footprint, Part, Point, Pose, RightOfWay};
 
     fn pair([d, v, other_d, other_v]: [f32; 4], surrounded: bool) -> Pair {
-        let vehicle_state = |direction: Point, distance: f32, speed: f32| VehicleState {
+        let vehicle_state = |direction: UnitVector, distance: f32, speed: f32| VehicleState {
             pose: Pose {
-                position: direction * -distance,
+                position: Point::from(direction.into_inner() * -distance),
                 direction,
             },
-            exit: Point::new(0.6, 0.8),
+            exit: unit(0.6, 0.8),
             speed,
             distance,
             footprint: Footprint::PAPER,
@@ -83,8 +83,8 @@ mod tests {
             }),
         };
         Pair {
-            ego: vehicle_state(Point::new(0.8, 0.6), d, v),
-            other: vehicle_state(Point::new(-1.0, 0.0), other_d, other_v),
+            ego: vehicle_state(unit(0.8, 0.6), d, v),
+            other: vehicle_state(unit(-1.0, 0.0), other_d, other_v),
             kind: ConflictKind::Crossing,
             right_of_way: RightOfWay::Unsettled,
             part: Part::Left,

@@ -6,6 +6,7 @@ use super::{bound, shortfall};
 use crate::interval::Interval;
 use cede_controller::Real;
 use cede_controller::Route;
+use cede_controller::geometry::unit;
 use cede_controller::junction::zone::{FAR, Zone};
 use cede_controller::shield::{Contract, Shield, margin};
 use cede_controller::{Footprint, Point, Pose};
@@ -239,7 +240,7 @@ fn shield_margin(
 ) -> f32 {
     let pose = Pose {
         position: Point::new(0.0, 0.0),
-        direction: Point::new(1.0, 0.0),
+        direction: unit(1.0, 0.0),
     };
     let vehicle = |(s, speed)| Vehicle { s, speed, pose };
     let seen = Observation {

@@ -22,7 +22,7 @@ const ANGLE: f64 = 16.0 * f32::EPSILON as f64;
 /// The range of a function on a box of states, the ranges of its partial derivatives (its
 /// generalised ones, where it has a kink: the mean value theorem holds for both), and how far its
 /// `f32` computation can be from it at the same state.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Enclosure {
     pub(super) value: Interval,
     pub(super) slopes: [Interval; STATE],

@@ -1,5 +1,6 @@
 use super::*;
 use crate::policy::Subject;
+use cede_controller::geometry::{UnitVector, unit};
 use cede_controller::kinematics::{State, advance};
 use cede_controller::policy::embedded;
 use cede_controller::policy::weights::Draft;
@@ -44,11 +45,11 @@ fn drive(scenario: &Scenario, from: [f32; 4], random: &mut Pcg64, steps: usize) 
         s: conflict.other_conflict - from[2],
         v: from[3],
     };
-    let seen = |state: State, direction| Vehicle {
+    let seen = |state: State, direction: UnitVector| Vehicle {
         s: state.s,
         speed: state.v,
         pose: Pose {
-            position: direction * (state.s - 305.0),
+            position: Point::from(direction.into_inner() * (state.s - 305.0)),
             direction,
         },
     };
@@ -64,8 +65,8 @@ fn drive(scenario: &Scenario, from: [f32; 4], random: &mut Pcg64, steps: usize) 
             f64::from(other.v),
         ]);
         let observation = Observation {
-            ego: seen(ego, Point::new(1.0, 0.0)),
-            others: [Some(seen(other, Point::new(0.0, 1.0)))],
+            ego: seen(ego, unit(1.0, 0.0)),
+            others: [Some(seen(other, unit(0.0, 1.0)))],
         };
         let command = controller.decide(&scene, &observation).acceleration;
         ego = advance(ego, command);

@@ -2,7 +2,7 @@
 
 use super::join::Patch;
 use super::{FAR, INFLATION, Span, TOUCHING};
-use crate::geometry::{Footprint, Point};
+use crate::geometry::{Footprint, Point, Vector};
 use crate::junction::route::Route;
 use heapless::Vec;
 
@@ -12,7 +12,7 @@ const PARALLEL: f32 = 0.866;
 /// A vehicle on one segment of its route.
 pub(super) struct Segment {
     start: Point,
-    direction: Point,
+    direction: Vector,
     /// Arc length at the start.
     arc: f32,
     length: f32,
@@ -54,13 +54,13 @@ type Polygon = Vec<Point, 12>;
 pub(super) fn meet(a: &Segment, b: &Segment) -> Option<Patch> {
     let between = a.start - b.start;
     let reach = a.length + b.length + a.half.0 + a.half.1 + b.half.0 + b.half.1;
-    if between.dot(between) > reach * reach {
+    if between.dot(&between) > reach * reach {
         return None;
     }
     let mut polygon = rectangle(a.length, b.length);
     for (axis, radius) in axes(a, b) {
-        let (along, other_along) = (axis.dot(a.direction), -axis.dot(b.direction));
-        let offset = axis.dot(between);
+        let (along, other_along) = (axis.dot(&a.direction), -axis.dot(&b.direction));
+        let offset = axis.dot(&between);
         for side in [-1.0, 1.0] {
             cut(&mut polygon, |p| {
                 radius + side * (offset + along * p.x + other_along * p.y)
@@ -72,10 +72,10 @@ pub(super) fn meet(a: &Segment, b: &Segment) -> Option<Patch> {
 
 /// The four directions in which two rectangles can be apart, each with the distance of their
 /// centres from which they are.
-fn axes(a: &Segment, b: &Segment) -> [(Point, f32); 4] {
-    let normal = |p: Point| Point::new(-p.y, p.x);
-    let radius = |half: (f32, f32), direction: Point, axis: Point| {
-        half.0 * axis.dot(direction).abs() + half.1 * axis.cross(direction).abs()
+fn axes(a: &Segment, b: &Segment) -> [(Vector, f32); 4] {
+    let normal = |v: Vector| Vector::new(-v.y, v.x);
+    let radius = |half: (f32, f32), direction: Vector, axis: Vector| {
+        half.0 * axis.dot(&direction).abs() + half.1 * axis.perp(&direction).abs()
     };
     [
         a.direction,
@@ -135,7 +135,7 @@ fn bounds(a: &Segment, b: &Segment, polygon: &Polygon) -> Option<Patch> {
     let starts = (a.first && ego.from <= TOUCHING) || (b.first && other.from <= TOUCHING);
     let ends =
         (a.last && ego.to >= a.length - TOUCHING) || (b.last && other.to >= b.length - TOUCHING);
-    let parallel = a.direction.dot(b.direction) > PARALLEL;
+    let parallel = a.direction.dot(&b.direction) > PARALLEL;
     let offset = a.arc - b.arc;
     Some(Patch {
         ego: placed(ego, a),

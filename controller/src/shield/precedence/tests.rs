@@ -1,7 +1,7 @@
 use super::super::hazard::{Passage, granted};
 use super::super::rules::Sound;
 use super::*;
-use crate::geometry::{Footprint, Point, Pose};
+use crate::geometry::{Footprint, Point, Pose, unit};
 use crate::junction::route::Route;
 use crate::junction::scene::Path;
 use crate::junction::zone::MAX_ZONES;
@@ -50,7 +50,7 @@ fn scene(ego: [(f32, f32); 2], other: [(f32, f32); 2], right_of_way: RightOfWay)
 fn vehicle([s, speed]: [f32; 2]) -> Vehicle {
     let pose = Pose {
         position: Point::new(0.0, 0.0),
-        direction: Point::new(1.0, 0.0),
+        direction: unit(1.0, 0.0),
     };
     Vehicle { s, speed, pose }
 }

@@ -11,6 +11,7 @@ mod answer;
 
 pub use answer::{ANSWER, answer};
 
+use cede_controller::geometry::unit;
 use cede_controller::{
     Contract, Controller, Footprint, Observation, Part, Path, Point, Policy, Pose, RightOfWay,
     Route, RouteError, Scene, SceneError, Vehicle,
@@ -131,7 +132,7 @@ fn vehicle(words: &[u32; VEHICLE]) -> Vehicle {
         speed: f32::from_bits(speed),
         pose: Pose {
             position: point(x, y),
-            direction: point(dx, dy),
+            direction: unit(f32::from_bits(dx), f32::from_bits(dy)),
         },
     }
 }

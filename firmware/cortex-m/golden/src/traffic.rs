@@ -72,7 +72,13 @@ impl Vehicle {
         };
         let (from, to) = (arm(45.0), arm(45.0));
         let (entry, exit) = (from * 0.15, to * 0.15);
-        let points = vec![from, entry, (entry + exit) * 0.35, exit, to];
+        let points = vec![
+            from,
+            entry,
+            Point::from((entry.coords + exit.coords) * 0.35),
+            exit,
+            to,
+        ];
         let route = Route::new(points.iter().copied()).expect("the points are apart");
         Self {
             points,

@@ -56,11 +56,8 @@ impl<const N: usize> Block<N> {
     #[inline]
     fn narrow(&self, ego: usize, other: usize, library: &Library, least: Eight) -> Eight {
         let [a, b] = [ego, other].map(|i| self.vehicles[i].outlines(library.footprint));
-        let between = b.centre - a.centre;
-        if between
-            .dot(between)
-            .all_greater(Eight::of(library.reach_squared))
-        {
+        let reach = Eight::of(library.reach_squared);
+        if a.centres_apart_squared(&b).all_greater(reach) {
             return least;
         }
         let lesser = least.min(a.separation(&b));

@@ -1,6 +1,7 @@
 //! The cost of deviating from the recorded drivers, and its derivatives.
 
 use cede_controller::Footprint;
+use cede_controller::geometry::distance;
 use cede_controller::kinematics::State;
 use cede_controller::separation::OrientedBox;
 use cede_data::{Encounter, Role};
@@ -127,7 +128,7 @@ impl Cost {
             OrientedBox::new(pose, Footprint::PAPER)
         };
         let (a, b) = (area(0, 0.0), area(1, 0.0));
-        let near = a.centre.distance(b.centre) < OUT_OF_REACH;
+        let near = distance(&a.centre, &b.centre) < OUT_OF_REACH;
         let short = self.gap - a.separation(&b);
         if self.contact == 0.0 || !near || short <= 0.0 {
             return 0.0;
