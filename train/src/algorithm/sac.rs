@@ -41,9 +41,9 @@ pub struct SacProgress {
     episodes: u64,
     updates: u64,
     /// Steps since the last update.
-    owed: u32,
+    steps_since_update: u32,
     /// For each course the running mean of its episodes' mean reward per step; `None` before the first.
-    usual: Vec<Option<f32>>,
+    mean_rewards: Vec<Option<f32>>,
 }
 
 /// A training run of soft actor-critic.
@@ -102,8 +102,8 @@ impl<'e> Sac<'e> {
             running: Vec::new(),
             episodes: 0,
             updates: 0,
-            owed: 0,
-            usual: vec![None; courses.len()],
+            steps_since_update: 0,
+            mean_rewards: vec![None; courses.len()],
         };
         Self::resume(progress, courses)
     }
@@ -150,8 +150,8 @@ impl<'e> Sac<'e> {
         self.step_all(&mut round);
         let progress = &mut self.progress;
         let ready = progress.replay.len() >= progress.settings.buffer_minimum;
-        while progress.owed >= progress.settings.steps_per_update.max(1) {
-            progress.owed -= progress.settings.steps_per_update.max(1);
+        while progress.steps_since_update >= progress.settings.steps_per_update.max(1) {
+            progress.steps_since_update -= progress.settings.steps_per_update.max(1);
             if ready {
                 progress.replay.sample(
                     progress.settings.batch,
@@ -181,8 +181,8 @@ impl<'e> Sac<'e> {
             random,
             running,
             episodes,
-            owed,
-            usual,
+            steps_since_update,
+            mean_rewards,
             ..
         } = &mut self.progress;
         while running.len() < settings.parallel {
@@ -195,7 +195,7 @@ impl<'e> Sac<'e> {
             .collect();
         let actions = learner.act(&seen, random);
         for (episode, action) in running.iter_mut().zip(actions.as_chunks().0) {
-            *owed += 1;
+            *steps_since_update += 1;
             let Some(mut steps) = episode.step(*action, self.courses, inputs, settings.reward)
             else {
                 continue;
@@ -204,7 +204,7 @@ impl<'e> Sac<'e> {
             let mean = steps.iter().map(|t| t.reward).sum::<f32>() / steps.len() as f32;
             round.reward += mean;
             if settings.centred {
-                let usual = usual[episode.course].get_or_insert(mean);
+                let usual = mean_rewards[episode.course].get_or_insert(mean);
                 *usual += MEAN_RATE * (mean - *usual);
                 steps
                     .iter_mut()
