@@ -31,7 +31,7 @@ pub struct Tally {
     pub steps: u64,
     /// Scenarios in which a shielded vehicle overlapped with another.
     pub overlaps: u64,
-    /// Steps without a verified plan although nobody broke the contract.
+    /// Steps without a verified plan although every motion is within the contract.
     pub unverified: u64,
     /// Steps at which somebody was said to have broken the contract, although nobody did.
     pub false_breaches: u64,

@@ -170,13 +170,11 @@ impl Contract {
     };
 
     /// A builder that starts from [`Contract::WORST_CASE`].
-    #[must_use]
     pub const fn builder() -> ContractBuilder {
         Self::WORST_CASE.to_builder()
     }
 
     /// A builder that starts from these numbers.
-    #[must_use]
     pub const fn to_builder(self) -> ContractBuilder {
         ContractBuilder::new(self)
     }
