@@ -66,7 +66,7 @@ fn grazing_pair(random: &mut Pcg64, margin: f32) -> [Pose; 2] {
     // Secant steps: the separation grows monotonically along `away`, with slope at most 1.
     for _ in 0..60 {
         let gap = separation(a, b) - wanted;
-        b.position = b.position - away * gap;
+        b.position -= away * gap;
     }
     [a, b]
 }

@@ -65,6 +65,10 @@ impl Sub for Dual {
 impl Mul for Dual {
     type Output = Self;
     #[inline]
+    #[expect(
+        clippy::suspicious_arithmetic_impl,
+        reason = "the product rule is a sum"
+    )]
     fn mul(self, other: Self) -> Self {
         let value = self.value * other.value;
         self.zip(other, value, |a, b| a * other.value + b * self.value)
@@ -153,7 +157,7 @@ impl Elementary for Dual {
         if self.value >= 0.0 { then } else { otherwise }
     }
 
-    /// The derivatives are those of the angle, flattened near the origin: see [`STEEPEST_ANGLE`].
+    /// The derivatives are those of the angle, flattened near the origin: see `STEEPEST_ANGLE`.
     #[inline]
     fn angle(self, other: Self, origin: Self) -> Self {
         let (y, x) = (self.value, other.value);
