@@ -7,9 +7,9 @@ use crate::junction::scene::{RouteConflict, Scene};
 use crate::observation::{Fault, Observation, Vehicle};
 use crate::policy::Policy;
 use crate::policy::pair::{Pair, Part, VehicleState};
+use crate::policy::svo;
 use crate::policy::traffic::{NearbyVehicle, TrafficContext};
 use crate::shield::{Contract, Shield};
-use core::f32::consts::FRAC_PI_4;
 
 /// Acceleration (m/s²) that is proposed when there is nobody left to meet.
 pub const FREE: f32 = 1.0;
@@ -55,7 +55,7 @@ impl<'w, const N: usize> Controller<'w, N> {
             policy,
             shield: Shield::new(contract),
             part,
-            orientations: [FRAC_PI_4; N],
+            orientations: [svo::FIRST; N],
             around: TrafficContext::default(),
         }
     }

@@ -55,7 +55,8 @@
 //!
 //! | | |
 //! |---|---|
-//! | [`junction`] | where two routes can touch |
+//! | [`geometry`] | points, vectors, directions, poses, footprints |
+//! | [`junction`] | where two routes can touch, and who may go first there |
 //! | [`policy`] | features, SVO, network, weights file, the policy that ships |
 //! | [`shield`] | margins and reach, as proved |
 //! | [`kinematics`], [`separation`] | one step of motion, and whether two footprints touch |
@@ -92,12 +93,12 @@ pub use controller::{Controller, FREE};
 pub use decision::{Action, Breach, Cause, Decision, Intervention, Prediction, Reason};
 pub use geometry::{Footprint, Point, Pose, UnitVector, Vector};
 pub use junction::{
-    CONFLICT_RADIUS, ConflictKind, MAX_OTHERS, Path, Route, RouteConflict, RouteError, Scene,
-    SceneError, Span, Zone,
+    CONFLICT_RADIUS, ConflictKind, MAX_OTHERS, Path, RightOfWay, Route, RouteConflict, RouteError,
+    Scene, SceneError, Span, Zone,
 };
 pub use observation::{Fault, Observation, Vehicle};
 pub use policy::{
-    Crosser, FeatureSet, Leader, Mlp, NearbyVehicle, Pair, Part, Perspective, Policy, RightOfWay,
+    Crosser, FeatureSet, Leader, Mlp, NearbyVehicle, Pair, Part, Perspective, Policy,
     TrafficContext, VehicleState, Weights, WeightsError,
 };
 pub use real::{Elementary, Real};

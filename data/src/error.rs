@@ -181,7 +181,7 @@ impl Problem {
             Self::Hole { .. } => {
                 "give the part after the hole a track number of its own; holes up to 1 s are interpolated"
             }
-            Self::Site(_) => "compare with sim/src/data/sites/EP0.toml",
+            Self::Site(_) => "compare with data/src/sites/EP0.toml",
             Self::Map(_) => {
                 "restore the map from its source, or remove it: it serves for drawing only"
             }

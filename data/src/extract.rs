@@ -12,10 +12,10 @@ use super::motion::motion;
 use super::site::Site;
 use super::tracks::{Recording, STEP_MS, Track};
 use crate::encounter::{Encounter, EncounterId, Participant, Role, Sample, SimRoute};
-use cede_controller::{ConflictKind, Footprint};
+use cede_controller::{CONFLICT_RADIUS, ConflictKind, Footprint};
 
 /// A vehicle has arrived when it is closer (m) to the conflict point than this.
-pub const NEAR: f64 = 5.0;
+pub const NEAR: f64 = CONFLICT_RADIUS as f64;
 
 /// All encounters of a recording, in the order of its tracks.
 ///

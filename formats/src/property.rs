@@ -1,6 +1,7 @@
 //! Properties of a policy as a readable file: what the verifier proves and training can aim at.
 
 use cede_controller::geometry::unit;
+use cede_controller::policy::svo;
 use cede_controller::{
     ConflictKind, Elementary, Footprint, Pair, Part, Point, Pose, RightOfWay, VehicleState,
 };
@@ -49,7 +50,7 @@ impl Setting {
             kind: self.kind,
             right_of_way: self.right_of_way,
             part: Part::Left,
-            last_svo: R::of(core::f32::consts::FRAC_PI_4),
+            last_svo: R::of(svo::FIRST),
         }
     }
 }

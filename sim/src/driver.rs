@@ -16,9 +16,10 @@ mod replay;
 mod right_of_way;
 mod shielded;
 
+pub use crate::observation_model::scene;
 pub use baseline::{Baseline, FitError, UnknownBaseline};
 pub use constant::{InitialSpeed, MeanSpeed};
-pub use controller::{Cede, observe, scene};
+pub use controller::{Cede, observe};
 pub use human::Human;
 pub use idm::Idm;
 pub use logistic::Logistic;

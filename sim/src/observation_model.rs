@@ -1,6 +1,5 @@
 //! What the two judged vehicles of an encounter see, while its bystanders do what they did.
 
-use crate::driver::scene;
 use cede_controller::RouteConflict;
 use cede_controller::kinematics::State;
 use cede_controller::{
@@ -9,6 +8,19 @@ use cede_controller::{
 use cede_controller::{Part, RightOfWay, VehicleState};
 use cede_data::encounter::Encounter;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4};
+
+/// The scene of judged vehicle `ego` with the one that it meets; `None` if there is none.
+#[must_use]
+pub fn scene(encounter: &Encounter, ego: usize) -> Option<Scene<1>> {
+    let path = |index: usize| {
+        let participant = encounter.participants.get(index)?;
+        Some(Path {
+            route: &participant.route,
+            footprint: Footprint::PAPER,
+        })
+    };
+    Scene::new(path(ego)?, &[path(1_usize.checked_sub(ego)?)?]).ok()
+}
 
 /// The bystanders of an encounter whose routes meet that of one of its judged vehicles.
 #[derive(Clone, Debug)]

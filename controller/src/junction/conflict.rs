@@ -1,4 +1,4 @@
-//! How two routes can meet.
+//! How two routes can meet, and who may go first where they do.
 
 /// How two routes conflict.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -12,4 +12,16 @@ pub enum ConflictKind {
     /// The footprints cannot touch, wherever the vehicles are on their routes.
     #[default]
     None,
+}
+
+/// Who may go first, by the rules of the road and the order of arrival.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum RightOfWay {
+    /// The ego.
+    Ego,
+    /// The other.
+    Other,
+    /// Not settled, or not known.
+    #[default]
+    Unsettled,
 }

@@ -5,7 +5,7 @@ pub(crate) mod route;
 pub(crate) mod scene;
 pub mod zone;
 
-pub use conflict::ConflictKind;
+pub use conflict::{ConflictKind, RightOfWay};
 pub use route::{Route, RouteError};
 pub use scene::{CONFLICT_RADIUS, MAX_OTHERS, Path, RouteConflict, Scene, SceneError};
 pub use zone::{Span, Zone};

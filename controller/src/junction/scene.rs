@@ -2,9 +2,9 @@
 
 use crate::geometry::{Footprint, Point, UnitVector};
 use crate::junction::conflict::ConflictKind;
+use crate::junction::conflict::RightOfWay;
 use crate::junction::route::Route;
 use crate::junction::zone::{Zone, Zones, zones};
-use crate::policy::pair::RightOfWay;
 use heapless::Vec;
 
 /// A vehicle has reached the conflict point when it is nearer to it than this (m): the paper's rule.
@@ -173,7 +173,7 @@ impl<const N: usize> Scene<N> {
     }
 
     #[cfg(test)]
-    pub(crate) fn meetings_mut(&mut self) -> &mut [RouteConflict] {
+    pub(crate) fn conflicts_mut(&mut self) -> &mut [RouteConflict] {
         &mut self.conflicts
     }
 

@@ -1,7 +1,8 @@
 //! What the network is told about a [`Pair`], and how it is scaled.
 
 use crate::junction::conflict::ConflictKind;
-use crate::policy::pair::{Crosser, Leader, Pair, RightOfWay, VehicleState};
+use crate::junction::conflict::RightOfWay;
+use crate::policy::pair::{Crosser, Leader, Pair, VehicleState};
 use crate::real::Elementary;
 
 /// Most features that a set has.

@@ -11,7 +11,7 @@ pub mod weights;
 
 pub use features::FeatureSet;
 pub use mlp::Mlp;
-pub use pair::{Crosser, Leader, Pair, Part, RightOfWay, VehicleState};
+pub use pair::{Crosser, Leader, Pair, Part, VehicleState};
 pub use traffic::{NearbyVehicle, TrafficContext};
 pub use weights::{Perspective, Weights, WeightsError};
 
@@ -20,13 +20,20 @@ use crate::policy::features::LIMIT;
 use crate::policy::features::MAX_FEATURES;
 
 /// Largest acceleration and braking (m/s²) that a policy proposes.
-pub const MAX_ACCELERATION: f32 = 3.0;
+pub use crate::kinematics::MAX_ACCELERATION;
 
 /// The acceleration (m/s²) that a network's output stands for.
 #[must_use]
 #[inline]
 pub fn acceleration(output: f32) -> f32 {
     MAX_ACCELERATION * libm::tanhf(output)
+}
+
+/// How [`acceleration`] answers to a small change of the output, where it is `acceleration` (m/s²).
+#[must_use]
+#[inline]
+pub fn acceleration_slope(acceleration: f32) -> f32 {
+    MAX_ACCELERATION - acceleration * acceleration / MAX_ACCELERATION
 }
 
 /// A network that drives. Copying it copies no weights.
@@ -106,9 +113,10 @@ mod tests {
     use super::*;
     use crate::geometry::{Footprint, Point, Pose, unit};
     use crate::junction::conflict::ConflictKind;
+    use crate::junction::conflict::RightOfWay;
     use crate::policy::features::FeatureSet;
     use crate::policy::pair::testing::pair;
-    use crate::policy::pair::{Crosser, Leader, RightOfWay, VehicleState};
+    use crate::policy::pair::{Crosser, Leader, VehicleState};
     use crate::policy::weights::testing::file;
     use proptest::prelude::*;
 
@@ -130,7 +138,7 @@ mod tests {
     }
 
     prop_compose! {
-        fn any_party()(bits in any::<[u32; 12]>(), follows in any::<bool>()) -> VehicleState {
+        fn any_vehicle_state()(bits in any::<[u32; 12]>(), follows in any::<bool>()) -> VehicleState {
             let [x, y, dx, dy, ex, ey, speed, distance, length, width, gap, leads] = bits.map(f32::from_bits);
             VehicleState {
                 pose: Pose { position: Point::new(x, y), direction: unit(dx, dy) },
@@ -147,7 +155,7 @@ mod tests {
     proptest! {
         #[test]
         fn whatever_the_bits_the_proposal_is_in_range(
-            ego in any_party(), other in any_party(), svo in any::<u32>(), left in any::<bool>(),
+            ego in any_vehicle_state(), other in any_vehicle_state(), svo in any::<u32>(), left in any::<bool>(),
         ) {
             let pair = Pair {
                 ego,

@@ -1,7 +1,7 @@
 //! The ego and one other vehicle, as the policy sees them.
 
 use crate::geometry::{Footprint, Pose, UnitVector};
-use crate::junction::conflict::ConflictKind;
+use crate::junction::conflict::{ConflictKind, RightOfWay};
 use crate::real::Elementary;
 use core::f32::consts::FRAC_PI_2;
 use nalgebra::Scalar;
@@ -43,18 +43,6 @@ pub struct Crosser<R = f32> {
     pub its_distance: R,
     /// The third one's speed in m/s, never negative.
     pub its_speed: R,
-}
-
-/// Who may go first, by the rules of the road and the order of arrival.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum RightOfWay {
-    /// The ego.
-    Ego,
-    /// The other.
-    Other,
-    /// Not settled, or not known.
-    #[default]
-    Unsettled,
 }
 
 /// Which part the ego plays; it says which output of a joint policy is the ego's.

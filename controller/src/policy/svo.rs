@@ -7,6 +7,9 @@
 
 use crate::real::Elementary;
 
+/// The SVO (rad) of a vehicle of which nothing is known yet: cooperative.
+pub const FIRST: f32 = core::f32::consts::FRAC_PI_4;
+
 /// Distances are floored here (m), so that the outcome at the conflict point stays finite.
 pub const MIN_DISTANCE: f32 = 0.1;
 

@@ -2,11 +2,12 @@
 
 use super::contract::Contract;
 use super::precedence::Claims;
+use super::reach::Reach;
 use super::rules::Rules;
+use crate::junction::conflict::RightOfWay;
 use crate::junction::scene::{MAX_OTHERS, Scene};
 use crate::junction::zone::{FAR, MAX_ZONES, Zone};
 use crate::observation::{Observation, Vehicle};
-use crate::policy::pair::RightOfWay;
 use crate::real::Real;
 use heapless::Vec;
 
@@ -175,7 +176,7 @@ fn hazard<R: Rules>(
         return Some(crossing);
     }
     let lead = ego.s - other.s;
-    if ego.s - error >= zone.ego.from && lead >= 0.5 * (zone.lead.from + zone.lead.to) {
+    if ego.s - error >= zone.ego.from && lead >= zone.middle() {
         // The ego is ahead in the lane: the other is the one who has to keep its distance.
         return None;
     }
@@ -230,6 +231,9 @@ pub(super) fn granted(
         Passage::Never => false,
     };
     let speed = other.speed + contract.speed_error;
-    let stops = other.s + error + speed * speed / (2.0 * rule.braking);
-    settled && zone.other.from >= stops
+    let seen = Reach {
+        distance: other.s + error,
+        speed,
+    };
+    settled && zone.other.from >= seen.rest(rule.braking)
 }

@@ -83,7 +83,7 @@ impl<const N: usize, R: Rules> Shield<N, R> {
     ///
     /// To be called once a period, with one and the same `scene`.
     ///
-    /// Cost: at most 14 candidates × one clearing time for each zone. the acceleration is
+    /// Cost: at most 14 candidates × one clearing time for each zone. The acceleration is
     /// finite and within the contract's, whatever the bits of the observation and the proposal.
     // Not inlined, so that its stack is not on top of the policy's.
     #[inline(never)]

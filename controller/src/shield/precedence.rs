@@ -6,10 +6,10 @@
 use super::contract::{Contract, Precedence};
 use super::rules::Rules;
 use super::waiting::{RestState, Standstill};
+use crate::junction::conflict::RightOfWay;
 use crate::junction::scene::{MAX_OTHERS, RouteConflict, Scene};
 use crate::junction::zone::{Span, Zone};
 use crate::observation::{Observation, Vehicle};
-use crate::policy::pair::RightOfWay;
 
 /// The zones in which the ego has precedence, one bit each.
 type Zones = u8;
@@ -200,7 +200,7 @@ impl PairMemory {
         if R::ends(perhaps, surely, begins, rule.patience) {
             self.turn = Turn::Past;
         }
-        // Periods that are not counted any more are in nobody's turn.
+        // A saturated counter no longer tells whose turn it is: nobody's.
         let counted = ego.perhaps < u16::MAX && other.perhaps < u16::MAX;
         // The first turn is the one's who gives way, the second the other's, and so on.
         let mine = self.first(right_of_way) == Some(turn % 2 == 1);

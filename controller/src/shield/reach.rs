@@ -82,7 +82,7 @@ impl<R: Real> Reach<R> {
         let limit = (cap - self.speed) * (cap + self.speed) / twice;
         let ramp = left.min(limit);
         let speed = (self.speed * self.speed + twice * ramp).sqrt();
-        // Not `left - ramp`, for the reason above.
+        // Not `left - ramp`, which is the same but would count the error of `left` twice.
         let steady = (left - limit).max(R::of(0.0));
         let time = (speed - self.speed).max(R::of(0.0)) / acceleration + steady / cap;
         (time, speed)

@@ -2,11 +2,11 @@
 
 use super::*;
 use crate::geometry::{Footprint, Point, Pose, unit};
+use crate::junction::conflict::RightOfWay;
 use crate::junction::route::Route;
 use crate::junction::scene::Path;
 use crate::junction::zone::Span;
 use crate::observation::Vehicle;
-use crate::policy::pair::RightOfWay;
 use proptest::prelude::*;
 use std::format;
 use std::string::ToString;
@@ -339,7 +339,7 @@ fn scaled(mut scene: Scene<2>, mut contract: Contract, factor: f32) -> (Scene<2>
             *x *= factor;
         }
     };
-    for conflict in scene.meetings_mut() {
+    for conflict in scene.conflicts_mut() {
         for zone in conflict.zones.iter_mut().flatten() {
             let interval = |i: &mut Span| {
                 scale(&mut i.from);

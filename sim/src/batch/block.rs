@@ -8,9 +8,8 @@ use super::{LANES, Lanes};
 use crate::reward::EpisodeLength;
 use crate::stepper::{self, Eight, Goal};
 use cede_controller::kinematics::{State, clamp_acceleration};
-use cede_controller::policy::svo::svo;
+use cede_controller::policy::svo::{self, svo};
 use cede_data::encounter::Role;
-use core::f32::consts::FRAC_PI_4;
 use core::ops::Range;
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -267,7 +266,7 @@ impl<const N: usize> Block<N> {
         }
         let [d, other_d] = [self.distance[0][lane], self.distance[1][lane]];
         let [v, other_v] = [self.vehicles[0].v[lane], self.vehicles[1].v[lane]];
-        self.svo[lane] = svo(v, d, other_v, other_d, FRAC_PI_4);
+        self.svo[lane] = svo(v, d, other_v, other_d, svo::FIRST);
     }
 
     fn place_vehicles(&mut self, lane: usize, library: &Library, scenario: &Scenario) {

@@ -2,9 +2,8 @@
 
 use cede_controller::geometry::{Footprint, Point, Vector, length};
 use cede_controller::kinematics::State;
-use cede_controller::policy::svo::svo;
+use cede_controller::policy::svo::{self, svo};
 use cede_data::encounter::{Encounter, Participant, Role};
-use core::f32::consts::FRAC_PI_4;
 use thiserror::Error;
 
 /// Why encounters cannot be stepped in a batch.
@@ -126,7 +125,7 @@ impl Library {
 
     /// The left-turner's SVO along the record, as [`super::Block`] keeps it along an episode.
     fn push_svo(&mut self, steps: u32, left: &Participant, other: &Participant) {
-        let mut last = FRAC_PI_4;
+        let mut last = svo::FIRST;
         for step in 0..=steps as usize {
             let at = |p: &Participant| {
                 let sample = p.record.get(step).or(p.record.last());

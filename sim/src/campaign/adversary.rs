@@ -93,7 +93,7 @@ impl Adversary {
         let (ego, mine) = (states[0], states[me]);
         let too_near = zones(scenario, me).filter(|z| z.is_lane()).any(|zone| {
             let lead = ego.s - mine.s;
-            let ahead = ego.s >= zone.ego.from && lead >= 0.5 * (zone.lead.from + zone.lead.to);
+            let ahead = ego.s >= zone.ego.from && lead >= zone.middle();
             let there = ahead && mine.s <= zone.other.to && ego.s <= zone.ego.to;
             there && lead - zone.lead.to < safe_gap(contract, mine.v, ego.v)
         });

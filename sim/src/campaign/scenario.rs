@@ -262,9 +262,8 @@ fn fits(setup: Setup, (route, start): &(Route<32>, State), placed: &[(Route<32>,
 fn leaves_room(setup: Setup, zone: &Zone, ego: &State, other: &State) -> bool {
     let contract = &setup.contract;
     let (lead, error) = (ego.s - other.s, contract.position_error());
-    let middle = 0.5 * (zone.lead.from + zone.lead.to);
     let entered = ego.s + 2.0 * error >= zone.ego.from && other.s <= zone.other.to;
-    let ahead = zone.is_lane() && entered && lead + 2.0 * error >= middle;
+    let ahead = zone.is_lane() && entered && lead + 2.0 * error >= zone.middle();
     !ahead || lead - zone.lead.to >= safe_gap(contract, other.v, ego.v)
 }
 

@@ -1,11 +1,11 @@
 //! The controller itself, as a driver: the code that runs in the vehicle.
 
 use super::{Driver, DriverFactory, View};
-use crate::observation_model::Bystanders;
+use crate::observation_model::{Bystanders, scene};
 use cede_controller::kinematics::State;
 use cede_controller::{
-    Cause, Contract, Controller, Decision, Footprint, Observation, Part, Path, Policy, Scene,
-    TrafficContext, Vehicle,
+    Cause, Contract, Controller, Decision, Observation, Part, Policy, Scene, TrafficContext,
+    Vehicle,
 };
 use cede_data::encounter::{Encounter, Role};
 
@@ -51,19 +51,6 @@ pub(super) const fn part(ego: usize) -> Part {
     } else {
         Part::Other
     }
-}
-
-/// The scene of judged vehicle `ego` with the one that it meets; `None` if there is none.
-#[must_use]
-pub fn scene(encounter: &Encounter, ego: usize) -> Option<Scene<1>> {
-    let path = |index: usize| {
-        let participant = encounter.participants.get(index)?;
-        Some(Path {
-            route: &participant.route,
-            footprint: Footprint::PAPER,
-        })
-    };
-    Scene::new(path(ego)?, &[path(1_usize.checked_sub(ego)?)?]).ok()
 }
 
 /// What vehicle `view.ego` senses of itself and the one that it meets; `None` if it is not there itself.

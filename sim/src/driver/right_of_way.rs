@@ -1,6 +1,7 @@
 //! How a vehicle drives once it is known who goes first: one goes, the other stops and waits.
 
 use super::View;
+use cede_controller::kinematics::MAX_ACCELERATION;
 use cede_data::encounter::Role;
 
 /// Acceleration (m/s²) with which a vehicle takes up its speed.
@@ -37,7 +38,7 @@ fn go(speed: f32) -> f32 {
 /// Stops within `distance` (m) from `speed` (m/s): holds back no sooner than comfort asks.
 fn stop(speed: f32, distance: f32) -> f32 {
     if distance <= 0.0 {
-        return -3.0;
+        return -MAX_ACCELERATION;
     }
     let needed = speed * speed / (2.0 * distance);
     if needed < 1.0 {

@@ -1,6 +1,6 @@
 //! Where the two vehicles have left their conflict zones.
 
-use crate::driver::scene;
+use crate::observation_model::scene;
 use cede_controller::RouteConflict;
 use cede_data::encounter::{Encounter, Role};
 

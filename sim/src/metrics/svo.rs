@@ -5,9 +5,8 @@
 use super::deviation::root_mean;
 use crate::episode::Episode;
 use cede_controller::kinematics::State;
-use cede_controller::policy::svo::svo;
+use cede_controller::policy::svo::{self, svo};
 use cede_data::encounter::{Encounter, Role};
-use std::f32::consts::FRAC_PI_4;
 
 /// The left-turner's SVO (rad) towards the other in each of `states`, until one of the two has
 /// reached its conflict point.
@@ -17,7 +16,7 @@ pub fn svo_series<'a>(
     encounter: &'a Encounter,
     states: impl Iterator<Item = [State; 2]> + 'a,
 ) -> impl Iterator<Item = f32> + 'a {
-    states.scan(FRAC_PI_4, |last, [left, other]| {
+    states.scan(svo::FIRST, |last, [left, other]| {
         let distance = |role, state: State| encounter.judged(role).conflict_s - state.s;
         let d = distance(Role::Left, left);
         let other_d = distance(Role::Other, other);

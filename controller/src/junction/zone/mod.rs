@@ -104,6 +104,12 @@ impl Zone {
         }
     }
 
+    /// The lead (m) above which the ego is the one ahead in a lane, and below which it is behind.
+    #[must_use]
+    pub fn middle(&self) -> f32 {
+        0.5 * (self.lead.from + self.lead.to)
+    }
+
     /// Whether both vehicles run along one lane in it.
     #[must_use]
     pub fn is_lane(&self) -> bool {
@@ -239,14 +245,14 @@ mod tests {
     }
 
     #[test]
-    fn more_meetings_than_capacity_are_all_covered() {
+    fn more_conflicts_than_capacity_are_all_covered() {
         let mut weave = std::vec::Vec::new();
         for i in 0..6_u8 {
             let x = 12.0 * f32::from(i);
             let side = if i % 2 == 0 { 20.0 } else { -20.0 };
             weave.extend([(x, -side), (x, side)]);
         }
-        let zones = meetings_unchecked(&[(-20.0, 0.0), (90.0, 0.0)], &weave);
+        let zones = conflicts_unchecked(&[(-20.0, 0.0), (90.0, 0.0)], &weave);
         assert_eq!(zones.len(), MAX_ZONES);
         for i in 0..6_u8 {
             let s = 20.0 + 12.0 * f32::from(i);
@@ -254,7 +260,7 @@ mod tests {
         }
     }
 
-    fn meetings_unchecked(ego: &[(f32, f32)], other: &[(f32, f32)]) -> std::vec::Vec<Zone> {
+    fn conflicts_unchecked(ego: &[(f32, f32)], other: &[(f32, f32)]) -> std::vec::Vec<Zone> {
         let paper = Footprint::PAPER;
         let found = zones((&route(ego), paper), (&route(other), paper));
         found.into_iter().flatten().collect()

@@ -3,7 +3,7 @@
 mod builder;
 mod demand;
 #[cfg(feature = "serde")]
-mod exchange;
+mod serial;
 
 pub use builder::ContractBuilder;
 pub use demand::ContractError;
@@ -40,7 +40,7 @@ pub use demand::ContractError;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "exchange::Numbers"))]
+#[cfg_attr(feature = "serde", serde(try_from = "serial::Numbers"))]
 pub struct Contract {
     pub(super) period: f32,
     pub(super) latency: f32,

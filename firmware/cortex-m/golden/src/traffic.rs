@@ -1,14 +1,13 @@
 //! Vehicles on straight and bent routes through one intersection.
 
 use crate::random::Random;
-use cede_controller::{Point, Route};
+use cede_controller::kinematics::STEP;
+use cede_controller::{Contract, Point, Route};
 use cede_golden::{POINTS, QUESTION, ROUTE, VEHICLE};
 
-/// Seconds of a step.
-const STEP: f32 = 0.1;
 /// What the others may do by the worst-case contract, in m/s² and m/s.
-const ACCELERATION: f32 = 3.0;
-const SPEED: f32 = 15.0;
+const ACCELERATION: f32 = Contract::WORST_CASE.other().acceleration;
+const SPEED: f32 = Contract::WORST_CASE.other().max_speed;
 
 /// The ego and the others.
 pub(crate) struct Traffic(Vec<Vehicle>);

@@ -7,7 +7,7 @@ use crate::driving::states;
 use crate::nn::network::{Delta, Network, Tape};
 use cede_controller::Pair;
 use cede_controller::kinematics::{STEP, State};
-use cede_controller::policy::{MAX_ACCELERATION, acceleration};
+use cede_controller::policy::{acceleration, acceleration_slope};
 use cede_sim::ObservationModel;
 use cede_sim::stepper::advance;
 use serde::{Deserialize, Serialize};
@@ -154,11 +154,10 @@ impl ClosedLoop {
                     Default::default()
                 };
                 for (by, commands) in by_commands.iter().zip(&step.commands[k]) {
-                    let squash = |a: f32| MAX_ACCELERATION - a * a / MAX_ACCELERATION;
                     let both = by.iter().zip(commands);
                     self.delta
                         .values
-                        .extend(both.map(|(by, a)| by * squash(*a)));
+                        .extend(both.map(|(by, a)| by * acceleration_slope(*a)));
                     self.delta.values.extend((2..width).map(|_| 0.0));
                 }
             }

@@ -4,7 +4,7 @@ use crate::algorithm::apg::settings::ClaimSettings;
 use crate::driving::inputs::Inputs;
 use crate::driving::slopes::slopes;
 use crate::nn::network::Delta;
-use cede_controller::policy::{MAX_ACCELERATION, acceleration};
+use cede_controller::policy::{MAX_ACCELERATION, acceleration, acceleration_slope};
 use cede_formats::property::{Claim, Place, Setting, StateProperty};
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -44,7 +44,7 @@ pub(super) struct Probe {
 pub(super) fn term(mean: f32, squashed: bool) -> (f32, f32) {
     if squashed {
         let a = acceleration(mean);
-        (a, MAX_ACCELERATION - a * a / MAX_ACCELERATION)
+        (a, acceleration_slope(a))
     } else {
         (MAX_ACCELERATION * mean, MAX_ACCELERATION)
     }
