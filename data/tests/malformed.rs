@@ -268,13 +268,13 @@ fn site_descriptions() {
     3 | lanes = 4
       | ^^^^^
     unknown field `lanes`, expected one of `name`, `folder`, `split`, `every_pair`, `arm`, `movement`, `conflict`
-    compare with sim/src/data/sites/EP0.toml
+    compare with data/src/sites/EP0.toml
     ");
     let unknown_arm = "name = \"X\"\nfolder = \"X\"\n[[conflict]]\nkind = \"crossing\"\n\
         left = { from = \"A\", to = \"B\" }\nother = { from = \"A\", to = \"B\" }\n";
     assert_snapshot!(read(unknown_arm), @r"
     X.toml: not a site description: there is no arm `A`
-    compare with sim/src/data/sites/EP0.toml
+    compare with data/src/sites/EP0.toml
     ");
 }
 
