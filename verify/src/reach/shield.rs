@@ -132,7 +132,7 @@ impl Shield {
         };
         let arrives = states.other_distance.add(zone.other.low());
         let go = margin::clears_before(contract, arrives, rush);
-        // Who is past has nothing to fear.
+        // A vehicle that has passed its zone leaves no conflict.
         let far = Interval::point(1e6);
         let passed = |end: Interval| (end.hi <= -PLACE, end.lo <= PLACE);
         let ego = passed(target);
