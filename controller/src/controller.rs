@@ -3,7 +3,8 @@
 use crate::decision::{Decision, Prediction};
 use crate::geometry::{Footprint, UnitVector};
 use crate::junction::conflict::ConflictKind;
-use crate::junction::scene::{RouteConflict, Scene};
+use crate::junction::conflict::RouteConflict;
+use crate::junction::scene::Scene;
 use crate::observation::{Fault, Observation, Vehicle};
 use crate::policy::Policy;
 use crate::policy::pair::{Pair, Part, VehicleState};
@@ -21,7 +22,7 @@ pub const FREE: f32 = 1.0;
 ///
 /// /// Once for every intersection: where the ego goes, and where another vehicle may come from.
 /// fn scene(mine: &Route<64>, theirs: &Route<64>) -> Result<Scene<8>, SceneError> {
-///     let path = |route| Path { route, footprint: Footprint::PAPER };
+///     let path = |route| ScenePath { route, footprint: Footprint::PAPER };
 ///     Scene::new(path(mine), &[path(theirs)])
 /// }
 ///
@@ -114,8 +115,9 @@ impl<'w, const N: usize> Controller<'w, N> {
     fn propose(&mut self, scene: &Scene<N>, seen: &Observation<N>) -> (f32, Option<Prediction>) {
         let mut proposal = (FREE, None);
         let around = self.around;
-        let others = scene.conflicts().iter().zip(seen.others.iter());
-        for ((number, last_svo), (conflict, other)) in
+        let others = scene.conflicts().iter().zip(scene.others());
+        let others = others.zip(seen.others.iter());
+        for ((number, last_svo), ((conflict, &(exit, footprint)), other)) in
             (0_u8..).zip(self.orientations.iter_mut()).zip(others)
         {
             let Some(other) = other else { continue };
@@ -134,12 +136,7 @@ impl<'w, const N: usize> Controller<'w, N> {
                         scene.footprint(),
                     )
                 },
-                other: vehicle_state(
-                    other,
-                    conflict.other_exit,
-                    conflict.other_conflict,
-                    conflict.other_footprint,
-                ),
+                other: vehicle_state(other, exit, conflict.other_conflict, footprint),
                 kind: conflict.kind,
                 right_of_way: conflict.right_of_way,
                 part: self.part,

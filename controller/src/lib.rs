@@ -16,7 +16,8 @@
 #![cfg_attr(feature = "embedded-policy", doc = "```")]
 #![cfg_attr(not(feature = "embedded-policy"), doc = "```ignore")]
 //! use cede_controller::{
-//!     Cause, Contract, Controller, Footprint, Observation, Part, Path, Point, Policy, Route, Scene, Vehicle,
+//!     Cause, Contract, Controller, Footprint, Observation, Part, Point, Policy, Route, Scene, ScenePath as Path,
+//!     Vehicle,
 //! };
 //!
 //! // From the map, in metres: the ego turns left, the oncoming vehicle goes straight on.
@@ -93,8 +94,9 @@ pub use controller::{Controller, FREE};
 pub use decision::{Action, Breach, Cause, Decision, Intervention, Prediction, Reason};
 pub use geometry::{Footprint, Point, Pose, UnitVector, Vector};
 pub use junction::{
-    CONFLICT_RADIUS, ConflictKind, MAX_OTHERS, Path, RightOfWay, Route, RouteConflict, RouteError,
-    Scene, SceneError, Span, Zone,
+    CONFLICT_RADIUS, Class, ConflictKind, Junction, JunctionBuilder, JunctionError, MAX_OTHERS,
+    Path, PathId, Polyline, RightOfWay, Route, RouteConflict, RouteError, Scene, SceneError,
+    ScenePath, Span, Way, Zone,
 };
 pub use observation::{Fault, Observation, Vehicle};
 pub use policy::{

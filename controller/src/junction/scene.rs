@@ -1,14 +1,11 @@
 //! The conflict geometry of the ego's route with those of the others, prepared once.
 
-use crate::geometry::{Footprint, Point, UnitVector};
-use crate::junction::conflict::ConflictKind;
-use crate::junction::conflict::RightOfWay;
+use crate::geometry::{Footprint, UnitVector};
+use crate::junction::conflict::{RightOfWay, RouteConflict};
+use crate::junction::path::MAX_FOOTPRINT;
 use crate::junction::route::Route;
-use crate::junction::zone::{Zone, Zones, zones};
+use crate::junction::zone::Body;
 use heapless::Vec;
-
-/// A vehicle has reached the conflict point when it is nearer to it than this (m): the paper's rule.
-pub const CONFLICT_RADIUS: f32 = 5.0;
 
 /// Most others of a scene, whatever its capacity.
 pub const MAX_OTHERS: usize = 8;
@@ -43,39 +40,12 @@ impl core::fmt::Display for SceneError {
 
 impl core::error::Error for SceneError {}
 
-/// How the ego's route meets one other's. Arc lengths are the respective vehicle's own, in metres.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RouteConflict {
-    /// How the routes conflict first.
-    pub kind: ConflictKind,
-    /// Where the ego has reached the conflict point: the first point of its route within
-    /// [`CONFLICT_RADIUS`] of the routes' first crossing. Routes that run together without crossing
-    /// have it at the entry of their zone; routes that do not meet, at their end.
-    pub ego_conflict: f32,
-    /// The same for the other.
-    pub other_conflict: f32,
-    /// Unit vector in which the other's route ends.
-    pub other_exit: UnitVector,
-    /// The other's footprint.
-    pub other_footprint: Footprint,
-    /// Who goes first if both arrive at once; unsettled unless [`Scene::set_right_of_way`] says so.
-    pub right_of_way: RightOfWay,
-    pub(crate) zones: Zones,
-}
-
-impl RouteConflict {
-    /// Where the footprints can touch; at most [`crate::junction::zone::MAX_ZONES`], in no particular order.
-    pub fn zones(&self) -> impl Iterator<Item = &Zone> {
-        self.zones.iter().flatten()
-    }
-}
-
 /// The conflict geometry of the ego's route with those of up to `N` others.
 ///
 /// It keeps no polylines: 8 others take less than 1.5 KiB.
 ///
 /// ```
-/// use cede_controller::{ConflictKind, Footprint, Path, Point, Route, Scene};
+/// use cede_controller::{ConflictKind, Footprint, Point, Route, Scene, ScenePath as Path};
 ///
 /// let east = Route::<4>::new([Point::new(-30.0, 0.0), Point::new(30.0, 0.0)])?;
 /// let north = Route::<4>::new([Point::new(0.0, -40.0), Point::new(0.0, 40.0)])?;
@@ -95,11 +65,13 @@ pub struct Scene<const N: usize> {
     /// Unit vector in which the ego's route ends.
     exit: UnitVector,
     conflicts: Vec<RouteConflict, N>,
+    /// In which direction each other's route ends, and its footprint.
+    others: Vec<(UnitVector, Footprint), N>,
 }
 
 impl<const N: usize> Scene<N> {
     /// Largest side of a footprint in metres.
-    pub const MAX_FOOTPRINT: f32 = 40.0;
+    pub const MAX_FOOTPRINT: f32 = MAX_FOOTPRINT;
 
     /// The scene of `ego` among `others`; an observation counts them in this order.
     ///
@@ -150,6 +122,7 @@ impl<const N: usize> Scene<N> {
             footprint: checked(ego.footprint)?,
             exit: exit(ego.route),
             conflicts: Vec::new(),
+            others: Vec::new(),
         })
     }
 
@@ -161,8 +134,14 @@ impl<const N: usize> Scene<N> {
         if self.conflicts.len() >= MAX_OTHERS {
             return Err(SceneError::Others);
         }
-        let conflict = RouteConflict::new(ego, other)?;
+        let footprint = checked(other.footprint)?;
+        let exit = exit(other.route);
+        let [ego, other] =
+            [ego, other].map(|path| Body::new(path.route.polyline(), path.footprint, 0.0));
+        let conflict = RouteConflict::between(&ego, &other);
         let pushed = self.conflicts.push(conflict);
+        pushed.map_err(|_| SceneError::Others)?;
+        let pushed = self.others.push((exit, footprint));
         pushed.map_err(|_| SceneError::Others)
     }
 
@@ -175,6 +154,11 @@ impl<const N: usize> Scene<N> {
     #[cfg(test)]
     pub(crate) fn conflicts_mut(&mut self) -> &mut [RouteConflict] {
         &mut self.conflicts
+    }
+
+    /// In which direction each other's route ends, and its footprint.
+    pub(crate) fn others(&self) -> &[(UnitVector, Footprint)] {
+        &self.others
     }
 
     /// The ego's footprint.
@@ -197,41 +181,8 @@ impl<const N: usize> Scene<N> {
     }
 }
 
-impl RouteConflict {
-    // Not inlined, so that its stack is free again when the scene is moved.
-    #[inline(never)]
-    fn new<const P: usize>(ego: Path<'_, P>, other: Path<'_, P>) -> Result<Self, SceneError> {
-        let other_footprint = checked(other.footprint)?;
-        let zones = zones((ego.route, ego.footprint), (other.route, other_footprint));
-        let first = zones
-            .iter()
-            .flatten()
-            .fold(None, |first: Option<&Zone>, zone| match first {
-                Some(first) if first.ego.from <= zone.ego.from => Some(first),
-                _ => Some(zone),
-            });
-        let (ego_conflict, other_conflict) = match (crossing(ego.route, other.route), first) {
-            (Some(point), _) => (reach(ego.route, point), reach(other.route, point)),
-            (None, Some(zone)) => (
-                within(zone.ego.from, ego.route.length()),
-                within(zone.other.from, other.route.length()),
-            ),
-            (None, None) => (ego.route.length(), other.route.length()),
-        };
-        Ok(Self {
-            kind: first.map_or(ConflictKind::None, |zone| zone.kind),
-            ego_conflict,
-            other_conflict,
-            other_exit: exit(other.route),
-            other_footprint,
-            right_of_way: RightOfWay::Unsettled,
-            zones,
-        })
-    }
-}
-
 fn checked(footprint: Footprint) -> Result<Footprint, SceneError> {
-    let good = |side: f32| side > 0.0 && side <= Scene::<0>::MAX_FOOTPRINT;
+    let good = |side: f32| side > 0.0 && side <= MAX_FOOTPRINT;
     if good(footprint.length) && good(footprint.width) {
         Ok(footprint)
     } else {
@@ -239,82 +190,15 @@ fn checked(footprint: Footprint) -> Result<Footprint, SceneError> {
     }
 }
 
-/// `value` in [0, `length`].
-fn within(value: f32, length: f32) -> f32 {
-    if value < 0.0 {
-        0.0
-    } else if value > length {
-        length
-    } else {
-        value
-    }
-}
-
 fn exit<const P: usize>(route: &Route<P>) -> UnitVector {
     route.pose(route.length()).direction
-}
-
-/// The first proper crossing of two polylines along the first of them.
-fn crossing<const P: usize>(a: &Route<P>, b: &Route<P>) -> Option<Point> {
-    let sides = |route: &'_ Route<P>| {
-        let points = route.points();
-        points.len().saturating_sub(1)
-    };
-    for i in 0..sides(a) {
-        let mut nearest: Option<f32> = None;
-        let (&p, &q) = (a.points().get(i)?, a.points().get(i + 1)?);
-        for j in 0..sides(b) {
-            let (&r, &s) = (b.points().get(j)?, b.points().get(j + 1)?);
-            if let Some(along) = cross(p, q, r, s)
-                && nearest.is_none_or(|nearest| along < nearest)
-            {
-                nearest = Some(along);
-            }
-        }
-        if let Some(along) = nearest {
-            return Some(p + (q - p) * along);
-        }
-    }
-    None
-}
-
-/// Where the open segment from `p` to `q` crosses that from `r` to `s`, as a fraction of `p` to `q`.
-fn cross(p: Point, q: Point, r: Point, s: Point) -> Option<f32> {
-    let (along, across) = (q - p, s - r);
-    let (side_p, side_q) = (across.perp(&(p - r)), across.perp(&(q - r)));
-    let (side_r, side_s) = (along.perp(&(r - p)), along.perp(&(s - p)));
-    // A crossing in a corner of a polyline belongs to the segment that begins there.
-    let crosses = |from: f32, to: f32| (from >= 0.0) != (to >= 0.0);
-    (crosses(side_p, side_q) && crosses(side_r, side_s)).then(|| side_p / (side_p - side_q))
-}
-
-/// Arc length of the first point of `route` within [`CONFLICT_RADIUS`] of `point`; its end if there is none.
-fn reach<const P: usize>(route: &Route<P>, point: Point) -> f32 {
-    let ends = route.points().iter().zip(route.points().iter().skip(1));
-    for ((&a, &b), (&from, &to)) in ends.zip(route.arc().iter().zip(route.arc().iter().skip(1))) {
-        let direction = (b - a) * (1.0 / (to - from));
-        // |a + direction·x − point| = radius, solved for the smaller x.
-        let offset = a - point;
-        let half = offset.dot(&direction);
-        let rest = offset.dot(&offset) - CONFLICT_RADIUS * CONFLICT_RADIUS;
-        if rest <= 0.0 {
-            return from;
-        }
-        let discriminant = half * half - rest * direction.dot(&direction);
-        if discriminant >= 0.0 {
-            let x = (-half - libm::sqrtf(discriminant)) / direction.dot(&direction);
-            if x >= 0.0 && x <= to - from {
-                return from + x;
-            }
-        }
-    }
-    route.length()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::unit;
+    use crate::geometry::{Point, unit};
+    use crate::junction::conflict::ConflictKind;
 
     fn path(route: &Route<8>) -> Path<'_, 8> {
         Path {
@@ -335,7 +219,7 @@ mod tests {
         let conflict = scene.conflicts()[0];
         assert!((conflict.ego_conflict - 37.0).abs() < 1e-4);
         assert!((conflict.other_conflict - 35.0).abs() < 1e-4);
-        assert_eq!(conflict.other_exit, unit(-1.0, 0.0));
+        assert_eq!(scene.others()[0].0, unit(-1.0, 0.0));
         assert_eq!(scene.exit(), unit(0.0, 1.0));
     }
 

@@ -6,8 +6,8 @@
 use super::contract::{Contract, Precedence};
 use super::rules::Rules;
 use super::waiting::{RestState, Standstill};
-use crate::junction::conflict::RightOfWay;
-use crate::junction::scene::{MAX_OTHERS, RouteConflict, Scene};
+use crate::junction::conflict::{RightOfWay, RouteConflict};
+use crate::junction::scene::{MAX_OTHERS, Scene};
 use crate::junction::zone::{Span, Zone};
 use crate::observation::{Observation, Vehicle};
 
