@@ -215,7 +215,10 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
 
     /// The ego's SVO towards track `number` at the last step; the first one, if there was none.
     fn orientation(&self, number: u16) -> f32 {
-        let known = self.orientations.iter().find(|&&(known, _)| known == number);
+        let known = self
+            .orientations
+            .iter()
+            .find(|&&(known, _)| known == number);
         known.map_or(svo::FIRST, |&(_, svo)| svo)
     }
 
@@ -265,8 +268,12 @@ fn nearby<'j, const N: usize>(
         .flat_map(|track| track.candidates().map(move |candidate| (track, candidate)));
     for (track, candidate) in candidates {
         let there = way.path(candidate.path).zip(way.conflict(candidate.path));
-        let Some((path, conflict)) = there else { continue };
-        let Ok(vehicle) = door::track(way, contract, track, candidate) else { continue };
+        let Some((path, conflict)) = there else {
+            continue;
+        };
+        let Ok(vehicle) = door::track(way, contract, track, candidate) else {
+            continue;
+        };
         let ahead = |zone: &crate::Zone| ego.s < zone.ego.to && vehicle.s < zone.other.to;
         if !conflict.zones().any(ahead) {
             continue;
@@ -304,7 +311,11 @@ fn vehicle_state(vehicle: &Vehicle, path: &Path, conflict: f32) -> VehicleState 
 }
 
 /// What all the others but track `except` are to the ego.
-fn traffic<const N: usize>(ego: &Vehicle, nearby: &Vec<Nearby<'_>, N>, except: u16) -> TrafficContext {
+fn traffic<const N: usize>(
+    ego: &Vehicle,
+    nearby: &Vec<Nearby<'_>, N>,
+    except: u16,
+) -> TrafficContext {
     let others = nearby.iter().filter(|other| other.number != except);
     let there = others.map(|other| NearbyVehicle {
         conflict: other.conflict,

@@ -20,9 +20,17 @@ pub fn most(contract: &Contract, speed: f32, in_effect: f32) -> f32 {
     let ego = contract.ego();
     let (period, late) = (contract.period(), contract.switching());
     let room = ego.max_speed - speed - contract.speed_error();
-    let carried = if in_effect > 0.0 { in_effect * late } else { 0.0 };
+    let carried = if in_effect > 0.0 {
+        in_effect * late
+    } else {
+        0.0
+    };
     let [after, throughout] = [(room - carried) / period, room / (period + late)];
-    let most = if after < throughout { after } else { throughout };
+    let most = if after < throughout {
+        after
+    } else {
+        throughout
+    };
     // In this order, what is not a number becomes 0.
     if most >= ego.acceleration {
         ego.acceleration

@@ -32,18 +32,31 @@ pub(crate) fn track(
     candidate: Candidate,
 ) -> Result<Vehicle, Fault> {
     let subject = Subject::Track(track.number);
-    let known = way.path(candidate.path).filter(|path| path.class == track.class);
+    let known = way
+        .path(candidate.path)
+        .filter(|path| path.class() == track.class);
     if known.is_none() {
         let last = way.paths().saturating_sub(1) as f32;
         let number = candidate.path.index() as f32;
         return Err(refused(subject, Field::Path, number, [0.0, last]));
     }
-    vehicle_on(way, contract, subject, candidate.path, track.vehicle(candidate))
+    vehicle_on(
+        way,
+        contract,
+        subject,
+        candidate.path,
+        track.vehicle(candidate),
+    )
 }
 
 /// The same number twice in one observation.
 pub(crate) fn twice(number: u16) -> Fault {
-    refused(Subject::Track(number), Field::Number, number.into(), [0.0, u16::MAX.into()])
+    refused(
+        Subject::Track(number),
+        Field::Number,
+        number.into(),
+        [0.0, u16::MAX.into()],
+    )
 }
 
 fn vehicle_on(
@@ -62,19 +75,36 @@ fn vehicle_on(
         }
     };
     let Some(line) = way.polyline(path) else {
-        return Err(refused(subject, Field::Path, path.index() as f32, [0.0, 0.0]));
+        return Err(refused(
+            subject,
+            Field::Path,
+            path.index() as f32,
+            [0.0, 0.0],
+        ));
     };
     let spare = contract.position_error + way.tolerance() + INFLATION;
     check(Field::ArcLength, vehicle.s, [-spare, line.length() + spare])?;
-    check(Field::Speed, vehicle.speed, [-Vehicle::REVERSING, Vehicle::MAX_SPEED])?;
+    check(
+        Field::Speed,
+        vehicle.speed,
+        [-Vehicle::REVERSING, Vehicle::MAX_SPEED],
+    )?;
     let most = Route::<2>::MAX_COORDINATE;
-    check(Field::Position, largest(vehicle.pose.position), [-most, most])?;
+    check(
+        Field::Position,
+        largest(vehicle.pose.position),
+        [-most, most],
+    )?;
     let direction = vehicle.pose.direction;
     let norm = libm::sqrtf(direction.dot(&direction));
     check(Field::Direction, norm, UNIT)?;
     let away = distance(&vehicle.pose.position, &line.pose(vehicle.s).position);
     check(Field::Offset, away, [0.0, spare])?;
-    check(Field::Heading, aligned(line, vehicle, spare) / norm, [ALIGNED, 2.0])?;
+    check(
+        Field::Heading,
+        aligned(line, vehicle, spare) / norm,
+        [ALIGNED, 2.0],
+    )?;
     if vehicle.speed < 0.0 {
         vehicle.speed = 0.0;
     }

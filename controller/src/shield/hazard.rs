@@ -87,10 +87,15 @@ impl Hazards {
         // From where the first zone that precedence opens begins to where the last one ends.
         let mut open = [FAR, -FAR];
         for (place, other) in (0_u8..).zip(tracks.iter()) {
-            let Some(conflict) = way.conflict(other.path) else { continue };
+            let Some(conflict) = way.conflict(other.path) else {
+                continue;
+            };
             for (index, zone) in (0_u8..).zip(conflict.zones()) {
-                let Some(hazard) = hazard::<R>(contract, (index, zone), ego, other) else { continue };
-                if has(other.claims, index) && granted(contract, hazard.passage, zone, (ego, other)) {
+                let Some(hazard) = hazard::<R>(contract, (index, zone), ego, other) else {
+                    continue;
+                };
+                if has(other.claims, index) && granted(contract, hazard.passage, zone, (ego, other))
+                {
                     let entry = zone.ego.from - ego.s - contract.position_error;
                     open = [Real::min(open[0], entry), Real::max(open[1], hazard.target)];
                     continue;
@@ -210,29 +215,36 @@ fn hazard<R: Rules>(
         return None;
     }
     let behind = behind::<R>(contract, zone, ego, other);
-    Some(if !is_ahead::<R>(contract, zone, ego, other) && behind > stop {
-        Hazard {
-            target: FAR,
-            limit: behind,
-            passage: Passage::Never,
-            ..crossing
-        }
-    } else {
-        Hazard {
-            target: zone.ego.from - ego.s + 3.0 * error,
-            passage: Passage::Ahead {
-                gap: gap_ahead(contract, zone, ego, other),
-                speed,
-            },
-            ..crossing
-        }
-    })
+    Some(
+        if !is_ahead::<R>(contract, zone, ego, other) && behind > stop {
+            Hazard {
+                target: FAR,
+                limit: behind,
+                passage: Passage::Never,
+                ..crossing
+            }
+        } else {
+            Hazard {
+                target: zone.ego.from - ego.s + 3.0 * error,
+                passage: Passage::Ahead {
+                    gap: gap_ahead(contract, zone, ego, other),
+                    speed,
+                },
+                ..crossing
+            }
+        },
+    )
 }
 
 /// Whether the ego is certainly in the lane, and ahead of the other in it.
 ///
 /// Two vehicles in a lane do not overlap: one that is not behind by the whole band is ahead.
-pub(super) fn is_ahead<R: Rules>(contract: &Contract, zone: &Zone, ego: &Vehicle, other: &Other) -> bool {
+pub(super) fn is_ahead<R: Rules>(
+    contract: &Contract,
+    zone: &Zone,
+    ego: &Vehicle,
+    other: &Other,
+) -> bool {
     let least = ego.s - contract.position_error;
     least >= zone.ego.from && R::is_ahead(zone, least - other.bounds.s.to)
 }
@@ -269,9 +281,7 @@ pub(super) fn granted(
     };
     let settled = match passage {
         Passage::Before { .. } => true,
-        Passage::Ahead { .. } => {
-            ego.s - contract.position_error - zone.other.from > zone.lead.from
-        }
+        Passage::Ahead { .. } => ego.s - contract.position_error - zone.other.from > zone.lead.from,
         Passage::Never => false,
     };
     let farthest = Reach {

@@ -80,7 +80,8 @@ impl Memory {
 
     /// Whether the plan stays out of zones that begin at `closed` (m).
     pub(crate) fn avoids(&self, closed: f32) -> bool {
-        self.remembered.is_none_or(|remembered| remembered.closed <= closed)
+        self.remembered
+            .is_none_or(|remembered| remembered.closed <= closed)
     }
 
     /// Another call at `now`. Whether the plan's commands have been given at the times that it counts on.
@@ -98,7 +99,9 @@ impl Memory {
 
     /// The ego's acceleration until the command to be given at `now` takes effect: least and most.
     pub(crate) fn in_effect(&self, contract: &Contract, now: Instant) -> [f32; 2] {
-        let settled = self.given.is_some_and(|given| now.since(given) + 1 >= micros(contract.latency));
+        let settled = self
+            .given
+            .is_some_and(|given| now.since(given) + 1 >= micros(contract.latency));
         match self.commands {
             [Some(command), _] if settled => [command; 2],
             commands => between(contract, commands),

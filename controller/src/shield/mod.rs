@@ -248,7 +248,12 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
     /// finite and within the contract's, whatever the bits of the observation and the proposal.
     // Not inlined, so that its stack is not on top of the policy's.
     #[inline(never)]
-    pub fn filter(&mut self, now: Instant, observation: &Observation<'_>, proposal: f32) -> Decision {
+    pub fn filter(
+        &mut self,
+        now: Instant,
+        observation: &Observation<'_>,
+        proposal: f32,
+    ) -> Decision {
         let tick = self.clock.tick(&self.contract, now);
         match tick {
             Tick::Repeated => return self.last,
@@ -285,7 +290,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
     pub fn ready(&self, now: Instant, observation: &Observation<'_>) -> Result<f32, NotReady> {
         let contract = &self.contract;
         let ego = door::ego(self.way, contract, &observation.ego).map_err(NotReady::Fault)?;
-        let mut next = self.clone();
+        let mut next = self.copy();
         let findings = next.look((now, Tick::First), &ego, observation);
         let mut hazards = Hazards::new();
         hazards.add::<N, R>(contract, self.way, (&ego, &next.tracks), findings.closed);
@@ -345,6 +350,15 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         Ok(scene.check::<R>(contract, acceleration).margin)
     }
 
+    /// The same shield; its rules need not be `Clone`.
+    fn copy(&self) -> Self {
+        Self {
+            tracks: self.tracks.clone(),
+            rules: PhantomData,
+            ..*self
+        }
+    }
+
     /// Whether a call at `now` is a new one.
     pub(crate) fn is_new(&self, now: Instant) -> bool {
         self.clock.last().is_none_or(|last| now > last)
@@ -387,7 +401,12 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
     }
 
     /// Notes what is seen and who goes first.
-    fn look(&mut self, when: (Instant, Tick), ego: &Vehicle, observation: &Observation<'_>) -> Findings {
+    fn look(
+        &mut self,
+        when: (Instant, Tick),
+        ego: &Vehicle,
+        observation: &Observation<'_>,
+    ) -> Findings {
         let (now, _) = when;
         let findings = self
             .tracks
@@ -426,24 +445,44 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         let line = |path: PathId| self.way.path(path).map_or(FAR, |path| path.line());
         // Of the periods in which there was no call, nothing is known.
         for missed in (0..periods.min(LOST)).rev() {
-            let seen = |sighting: Sighting| if missed == 0 { sighting } else { unseen(sighting) };
+            let seen = |sighting: Sighting| {
+                if missed == 0 {
+                    sighting
+                } else {
+                    unseen(sighting)
+                }
+            };
             let own = line(self.way.ego());
             self.presence.note(contract, rule, own, seen(mine), now);
             for other in self.tracks.iter_mut() {
                 let its = seen(other.sighting(contract));
-                other.pair.other.note(contract, rule, line(other.path), its, now);
+                other
+                    .pair
+                    .other
+                    .note(contract, rule, line(other.path), its, now);
                 let conflict = self.way.conflict(other.path);
-                let right_of_way = conflict.map_or_default(|conflict| conflict.right_of_way);
-                let right_of_way = if ego.is_some() { right_of_way } else { RightOfWay::Unsettled };
-                other.pair.pass::<R>(contract, rule, right_of_way, &self.presence);
+                let right_of_way =
+                    conflict.map_or(RightOfWay::Unsettled, |conflict| conflict.right_of_way);
+                let right_of_way = if ego.is_some() {
+                    right_of_way
+                } else {
+                    RightOfWay::Unsettled
+                };
+                other
+                    .pair
+                    .pass::<R>(contract, rule, right_of_way, &self.presence);
             }
         }
         for other in self.tracks.iter_mut() {
-            let Some(conflict) = self.way.conflict(other.path) else { continue };
+            let Some(conflict) = self.way.conflict(other.path) else {
+                continue;
+            };
             let row = conflict.right_of_way;
             other.claims = other.pair.claims(contract, rule, row, &self.presence);
             if let Some(ego) = ego.filter(|_| other.claims != precedence::ALL) {
-                other.pair.hold::<R>(contract, &self.presence, conflict.zones(), ego.s);
+                other
+                    .pair
+                    .hold::<R>(contract, &self.presence, conflict.zones(), ego.s);
                 other.claims = other.pair.claims(contract, rule, row, &self.presence);
             }
         }
@@ -463,7 +502,12 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         }
         let findings = self.look(when, ego, observation);
         let mut hazards = Hazards::new();
-        hazards.add::<N, R>(&self.contract, self.way, (ego, &self.tracks), findings.closed);
+        hazards.add::<N, R>(
+            &self.contract,
+            self.way,
+            (ego, &self.tracks),
+            findings.closed,
+        );
         let in_effect = self.memory.in_effect(&self.contract, now);
         let scene = Scene {
             ego,
@@ -493,9 +537,10 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         };
         let contract = &self.contract;
         let barred = !self.memory.avoids(closed);
-        let suspects = scene.hazards.iter().filter(|hazard| {
-            all || hazard.suspect || (barred && hazard.place == u8::MAX)
-        });
+        let suspects = scene
+            .hazards
+            .iter()
+            .filter(|hazard| all || hazard.suspect || (barred && hazard.place == u8::MAX));
         let mut suspects = suspects.peekable();
         if suspects.peek().is_none() {
             return;
@@ -515,7 +560,12 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         self.tracks.iter_mut().for_each(|other| other.counted = 0);
     }
 
-    fn decide(&mut self, scene: &Scene<'_>, (now, closed): (Instant, f32), proposal: f32) -> Decision {
+    fn decide(
+        &mut self,
+        scene: &Scene<'_>,
+        (now, closed): (Instant, f32),
+        proposal: f32,
+    ) -> Decision {
         let contract = self.contract;
         let wanted = allowed(&contract.ego, scene.most, proposal);
         let verdict = scene.check::<R>(&contract, wanted);
@@ -565,7 +615,10 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
     /// Notes which lanes the plan enters ahead of somebody.
     fn count_on(&mut self, hazards: &Hazards, verified: Verified) {
         self.tracks.iter_mut().for_each(|other| other.counted = 0);
-        for hazard in hazards.iter().filter(|hazard| hazard.target <= verified.passes) {
+        for hazard in hazards
+            .iter()
+            .filter(|hazard| hazard.target <= verified.passes)
+        {
             let other = self.tracks.iter_mut().nth(hazard.place.into());
             if let (Passage::Ahead { .. }, Some(other)) = (hazard.passage, other) {
                 other.counted |= 1 << hazard.zone;
@@ -595,7 +648,7 @@ const fn next(contract: &Contract, plan: Plan) -> f32 {
 
 /// Whether in every lane that the ego shares, sensed positions tell who is ahead.
 fn tells_apart(contract: &Contract, way: Way<'_>) -> Result<(), EnterError> {
-    for (path, conflict) in way.conflicts_by_path() {
+    for (path, conflict) in way.conflicts() {
         for zone in conflict.zones().filter(|zone| zone.is_lane()) {
             let below = 0.25 * (zone.lead.to - zone.lead.from);
             let value = contract.position_error;

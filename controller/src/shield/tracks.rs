@@ -131,7 +131,12 @@ impl<const N: usize> Tracks<N> {
                 other.number != track.number || other.seen || track.may_be_on(other.path)
             });
             for candidate in track.candidates() {
-                self.note_candidate::<R>((contract, way), (now, ego), (track, candidate), &mut findings);
+                self.note_candidate::<R>(
+                    (contract, way),
+                    (now, ego),
+                    (track, candidate),
+                    &mut findings,
+                );
             }
         }
         let passed = |zone: &Zone| ego.s - contract.position_error >= zone.ego.to;
@@ -230,12 +235,21 @@ fn unplaced(way: Way<'_>, path: PathId, ego: f32) -> Option<f32> {
     };
     match way.conflict(path) {
         Some(conflict) => first(conflict),
-        None => way.conflicts().filter_map(first).reduce(f32::min),
+        None => way
+            .conflicts()
+            .filter_map(|(_, conflict)| first(conflict))
+            .reduce(f32::min),
     }
 }
 
 impl Other {
-    fn new(contract: &Contract, number: u16, path: PathId, vehicle: &Vehicle, now: Instant) -> Self {
+    fn new(
+        contract: &Contract,
+        number: u16,
+        path: PathId,
+        vehicle: &Vehicle,
+        now: Instant,
+    ) -> Self {
         let (s, speed) = (vehicle.s, vehicle.speed);
         Self {
             number,
@@ -281,7 +295,11 @@ impl Other {
     }
 
     /// Where the ego enters the first zone that neither it has left nor the ego has `passed` (m).
-    fn entry<R: Rules>(&self, conflict: &RouteConflict, passed: impl Fn(&Zone) -> bool) -> Option<f32> {
+    fn entry<R: Rules>(
+        &self,
+        conflict: &RouteConflict,
+        passed: impl Fn(&Zone) -> bool,
+    ) -> Option<f32> {
         let entries = self.ahead::<R>(conflict, passed).map(|zone| zone.ego.from);
         entries.reduce(f32::min)
     }

@@ -66,7 +66,14 @@ enum Arrived {
 
 impl Arrival {
     /// Notes that the vehicle is within `s` (m) at `now`, and where its line is.
-    fn note(&mut self, contract: &Contract, rule: Precedence, line: f32, s: Span, now: Instant) -> Arrived {
+    fn note(
+        &mut self,
+        contract: &Contract,
+        rule: Precedence,
+        line: f32,
+        s: Span,
+        now: Instant,
+    ) -> Arrived {
         let here = line - rule.distance;
         let jitter = micros(contract.jitter);
         if self.by.is_some() {
@@ -215,8 +222,8 @@ impl Presence {
     pub(super) fn first(self, other: Self, period: u64) -> bool {
         let period = i64::try_from(period).unwrap_or(i64::MAX);
         let rested = i64::from(self.standstill.surely) - i64::from(other.standstill.perhaps);
-        self.arrival.earlier(other.arrival).is_some_and(|arrived| {
-            arrived.saturating_add(rested.saturating_mul(period)) > period
-        })
+        self.arrival
+            .earlier(other.arrival)
+            .is_some_and(|arrived| arrived.saturating_add(rested.saturating_mul(period)) > period)
     }
 }

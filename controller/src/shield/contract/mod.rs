@@ -293,7 +293,10 @@ mod tests {
             "position_error = -1 is outside [0, 10]",
         );
         begins(worst(|c| c.slack = 0.0), "slack = 0 is outside [0.01, 10]");
-        begins(worst(|c| c.jitter = 0.01), "latency = 0.1 is outside [0, 0.07");
+        begins(
+            worst(|c| c.jitter = 0.01),
+            "latency = 0.1 is outside [0, 0.07",
+        );
         begins(
             worst(|c| c.ego.acceleration = 3.5),
             "ego.acceleration = 3.5 is outside (0, 3]: ",
