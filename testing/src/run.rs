@@ -124,3 +124,38 @@ pub(crate) fn explain<R: Rules + Clone>(subject: &Subject<'_>, case: &Case, trut
     }
     format!("{case}\n\n{trace}")
 }
+
+/// Seconds until the ego is through, driven by its policy; none if it is not within `duration` (s).
+///
+/// # Errors
+/// That the case does not start within the contract, or that vehicles overlap.
+pub(crate) fn journey<R: Rules + Clone>(
+    subject: &Subject<'_>,
+    case: &Case,
+    duration: f64,
+) -> Result<Option<f64>, Miss> {
+    let junction = junction(case, subject)?;
+    let contract = subject.contract;
+    let mut pilot = Pilot::<R>::enter(subject.policy, contract, &junction).map_err(Miss::skip)?;
+    let start = World::new(
+        (case, &junction),
+        subject.vehicle.footprint,
+        (&contract, &subject.as_contracted()),
+    );
+    let mut world = start.map_err(Miss::skip)?;
+    world.duration = duration;
+    while let Some(seen) = world.look() {
+        if world.is_through() {
+            return Ok(Some(world.time()));
+        }
+        if world.step == 0 {
+            pilot.ready(&seen).map_err(Miss::skip)?;
+        }
+        let decision = pilot.decide(&seen, None);
+        world.go(decision.acceleration);
+    }
+    match world.overlap {
+        Some(overlap) => Err(Miss::broken(overlap)),
+        None => Ok(world.is_through().then_some(world.time())),
+    }
+}

@@ -41,12 +41,12 @@ fn any_contract() -> impl Strategy<Value = Contract> {
             let (fast, launch, brakes) = (100.0 * other.0, 20.0 * other.1, 20.0 * other.2);
             let (braking, its) = (brakes * ego.0, brakes * follower.1);
             let acceleration = launch.min(braking.max(its)) * ego.1;
-            let rule = rule.map(|(distance, tie, share, patience)| Precedence {
-                distance: 200.0 * distance,
-                tie,
-                braking: braking * share,
-                patience,
-                ..Precedence::ALL_WAY_STOP
+            let rule = rule.map(|(distance, tie, share, patience)| {
+                let mut rule = Precedence::ALL_WAY_STOP;
+                rule.distance = 200.0 * distance;
+                rule.braking = braking * share;
+                (rule.tie, rule.patience) = (tie, patience);
+                rule
             });
             Contract::builder()
                 .period(period)
@@ -109,9 +109,15 @@ const FIELDS: [Field; 17] = [
     ("ego.braking", ContractBuilder::ego_braking, 8.0),
     ("follower.reaction", ContractBuilder::follower_reaction, 10.0),
     ("follower.braking", ContractBuilder::follower_braking, 8.0),
-    ("precedence.distance", |b, x| b.precedence(Some(Precedence { distance: x, ..Precedence::ALL_WAY_STOP })), 200.0),
-    ("precedence.braking", |b, x| b.precedence(Some(Precedence { braking: x, ..Precedence::ALL_WAY_STOP })), 20.0),
+    ("precedence.distance", |b, x| stop(b, |rule| rule.distance = x), 200.0),
+    ("precedence.braking", |b, x| stop(b, |rule| rule.braking = x), 20.0),
 ];
+
+fn stop(builder: ContractBuilder, change: impl Fn(&mut Precedence)) -> ContractBuilder {
+    let mut rule = Precedence::ALL_WAY_STOP;
+    change(&mut rule);
+    builder.precedence(Some(rule))
+}
 
 /// Each contract that is refused for one number: above its range, below it, or no number.
 pub fn refused_contract() -> impl Strategy<Value = Refused> {

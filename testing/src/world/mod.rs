@@ -68,6 +68,8 @@ pub(crate) struct World<'j> {
     time: f64,
     pub(crate) step: u32,
     pub(crate) overlap: Option<Overlap>,
+    /// Longest time (s) of the run.
+    pub(crate) duration: f64,
 }
 
 impl<'j> World<'j> {
@@ -99,6 +101,7 @@ impl<'j> World<'j> {
             time: 0.0,
             step: 0,
             overlap: None,
+            duration: DURATION,
         };
         world.check_start()?;
         Ok(world)
@@ -136,7 +139,7 @@ impl<'j> World<'j> {
 
     /// What is sensed now; nothing, if the run is over.
     pub(crate) fn look(&mut self) -> Option<Seen> {
-        if self.overlap.is_some() || self.time > DURATION || self.is_over() {
+        if self.overlap.is_some() || self.time > self.duration || self.is_over() {
             return None;
         }
         let now = self.now();
