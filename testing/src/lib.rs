@@ -54,5 +54,5 @@ mod world;
 pub use case::{Case, Level, Noise, Other, Proposals, Push};
 pub use place::{Place, Right, Road, Shape, TestJunction};
 pub use report::{Failure, Outcome, Report, Verdict};
-pub use suite::Suite;
+pub use suite::{Suite, checks};
 pub use vehicle::{Bold, Vehicle, mend};

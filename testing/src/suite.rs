@@ -84,12 +84,6 @@ impl<'w, R: Rules + Clone + 'static> Suite<'w, R> {
         Suite { context, only, rules: PhantomData }
     }
 
-    /// Id and sentence of every check.
-    #[must_use]
-    pub fn checks() -> Vec<(&'static str, &'static str)> {
-        all::<R>().iter().map(|check| (check.id, check.sentence)).collect()
-    }
-
     /// Runs the checks, one after the other, and tells `watch` of each outcome as it comes.
     pub fn run_watched(self, mut watch: impl FnMut(&Outcome)) -> Report {
         let wanted = |id: &str| self.only.as_ref().is_none_or(|only| only.iter().any(|o| o == id));
@@ -129,4 +123,10 @@ impl<'w, R: Rules + Clone + 'static> Suite<'w, R> {
             contract.latency(),
         )
     }
+}
+
+/// Id and sentence of every check, in the order in which [`Suite::run`] runs them.
+#[must_use]
+pub fn checks() -> Vec<(&'static str, &'static str)> {
+    all::<Sound>().iter().map(|check| (check.id, check.sentence)).collect()
 }

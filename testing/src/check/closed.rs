@@ -118,6 +118,10 @@ pub(super) fn speed_limit<R: Rules + Clone>(context: &Context<'_>, id: &'static 
     let limit = f64::from(context.subject.contract.ego().max_speed);
     always::<R>(context, id, &truth, |call| {
         let speed = call.world.ego.state.v;
+        if call.seen.ego.s.is_nan() {
+            // Without the ego's own state the shield carries on with its plan, at the least speed that it may have.
+            return Err(Miss::skip("the ego's own state is missing"));
+        }
         if speed <= limit + ROUNDING {
             return Ok(());
         }

@@ -98,7 +98,7 @@ pub(crate) fn all<R: Rules + Clone + 'static>() -> Vec<Check> {
         ),
         check(
             "speed-limit",
-            "The ego never exceeds the contract's ego.max_speed.",
+            "As long as its own state is seen, the ego never exceeds the contract's ego.max_speed.",
             closed::speed_limit::<R>,
         ),
         check(
@@ -143,12 +143,12 @@ pub(crate) fn all<R: Rules + Clone + 'static>() -> Vec<Check> {
         ),
         check(
             "missing",
-            "A track that is missing never lets the ego go harder.",
+            "With exact sensors, a track that is missing never lets the ego go harder.",
             twins::missing::<R>,
         ),
         check(
             "replacing",
-            "With exact sensors, the plan outlives a call that replaces policy and contract by themselves.",
+            "Replacing policy and contract by themselves, while a plan can be found anew, changes nothing.",
             twins::replacing::<R>,
         ),
         check(

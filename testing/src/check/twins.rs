@@ -160,17 +160,17 @@ pub(super) fn bystanders<R: Rules + Clone>(context: &Context<'_>, id: &'static s
 pub(super) fn missing<R: Rules + Clone>(context: &Context<'_>, id: &'static str) -> Found {
     let most = context.subject.contract.ego().acceleration;
     twins::<R>(context, id, |_, call| {
+        if call.world.case.noise.errors != Level::None {
+            // An older observation may have been a luckier one.
+            return Err(Miss::skip("sensors are not exact"));
+        }
         if call.world.step == 0 {
             return Ok(());
         }
         let passes = |seen: &Seen| {
             let decision = call.before.probe(seen, most);
             // The next command of the plan is as safe, and may be harder than what can be verified anew.
-            let remembered = matches!(
-                decision.cause,
-                Cause::Shielded(Intervention { action: Action::Remembered, .. }) | Cause::Fallback(_)
-            );
-            (decision.acceleration, remembered)
+            (decision.acceleration, !is_fresh(&decision))
         };
         let (all, _) = passes(call.seen);
         for left_out in 0..call.seen.tracks.len() {
@@ -193,18 +193,20 @@ pub(super) fn missing<R: Rules + Clone>(context: &Context<'_>, id: &'static str)
 pub(super) fn replacing<R: Rules + Clone>(context: &Context<'_>, id: &'static str) -> Found {
     let subject = context.subject;
     twins::<R>(context, id, |twin, call| {
-        let noise = &call.world.case.noise;
-        if noise.errors != Level::None || noise.missing > 0 {
-            return Err(Miss::skip("sensors are not exact"));
-        }
-        if call.world.step % 7 == 3 {
+        if call.world.step % 7 == 3 && is_fresh(call.decision) {
             twin.set_policy(subject.policy);
             twin.set_contract(subject.contract).map_err(Miss::broken)?;
         }
         let decision = twin.decide(call.seen, call.proposal);
-        if decision.plan.is_some() {
-            return Ok(());
-        }
-        Err(differs(call, call.decision, &decision))
+        same(call, call.decision, &decision)
     })
+}
+
+/// Whether its plan was found anew.
+fn is_fresh(decision: &Decision) -> bool {
+    match decision.cause {
+        Cause::Policy => true,
+        Cause::Shielded(Intervention { action, .. }) => action == Action::Nearest,
+        _ => false,
+    }
 }

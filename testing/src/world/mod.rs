@@ -1,7 +1,7 @@
 //! The world of a closed loop, in double precision, with kinematics of its own.
 
 pub(crate) mod boxes;
-mod ego;
+mod commanded;
 pub(crate) mod follower;
 pub(crate) mod line;
 pub(crate) mod motion;
@@ -13,7 +13,7 @@ use crate::vehicle::Truth;
 use boxes::Rectangle;
 use cede_controller::geometry::unit;
 use cede_controller::{Contract, Footprint, Instant, Observation, Point, Pose, Track, Vehicle, Zone};
-use ego::Ego;
+use commanded::Commanded;
 use line::Line;
 use motion::State;
 use other::Driven;
@@ -62,7 +62,7 @@ pub(crate) struct World<'j> {
     pub(crate) junction: &'j TestJunction,
     own: Footprint,
     lines: Vec<Line>,
-    pub(crate) ego: Ego,
+    pub(crate) ego: Commanded,
     pub(crate) others: Vec<Driven<'j>>,
     /// Seconds since the first call on the grid.
     time: f64,
@@ -86,7 +86,7 @@ impl<'j> World<'j> {
         let lines: Vec<Line> = lines.into_iter().flatten().collect();
         let line = junction.path(Road::Own.path()).map_or(0.0, |path| f64::from(path.line()));
         let s = line - f64::from(case.before) / 10.0;
-        let ego = Ego::new(State { s, v: f64::from(case.speed) / 10.0 });
+        let ego = Commanded::new(State { s, v: f64::from(case.speed) / 10.0 });
         let others = case.others.iter().enumerate();
         let others = others.map(|(i, other)| Driven::new(i, other, ego.state, (contract, junction)));
         let world = Self {
@@ -165,7 +165,8 @@ impl<'j> World<'j> {
     /// The time of this call.
     fn now(&self) -> Instant {
         let (noise, grid) = (&self.case.noise, self.grid());
-        let off = self.truth.jitter * noise.share(noise.jitter, self.step, 99);
+        // Each call is the beginning of a grid for those after it: from one to another it is twice this.
+        let off = 0.5 * self.truth.jitter * noise.share(noise.jitter, self.step, 99);
         let off = if self.step == 0 { 0.0 } else { off };
         Instant::from_micros(grid.saturating_add_signed((off * 1e6) as i64))
     }

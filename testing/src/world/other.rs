@@ -1,10 +1,12 @@
 //! Another vehicle: it follows a script within the contract, keeps its distance, or has a shield of its own.
 
 use super::Seen;
+use super::commanded::Commanded;
 use super::follower::Follower;
 use super::motion::State;
 use crate::case::{Other, Push, quarters};
 use crate::place::{Road, TestJunction};
+use crate::vehicle::Truth;
 use cede_controller::{Contract, Plan, Shield, Zone};
 
 /// Another vehicle on its way.
@@ -20,9 +22,7 @@ pub(crate) struct Driven<'j> {
     wanted: f64,
     follower: Follower,
     /// Where a rule of precedence is assumed, the others keep it because they have a shield as well.
-    shield: Option<Shield<'j>>,
-    /// The command (m/s²) that is on its way, and the seconds until it takes effect.
-    coming: Option<(f64, f64)>,
+    shield: Option<(Shield<'j>, Commanded)>,
 }
 
 impl<'j> Driven<'j> {
@@ -44,23 +44,23 @@ impl<'j> Driven<'j> {
             // No zone.
             _ => 100.0 - before,
         };
+        let state = State { s, v: f64::from(other.speed) / 10.0 };
         let shield = match contract.precedence() {
             Some(_) => {
                 let entered = Shield::enter(*contract, junction, other.road.path());
-                Some(entered.map_err(|error| error.to_string())?)
+                Some((entered.map_err(|error| error.to_string())?, Commanded::new(state)))
             }
             None => None,
         };
         Ok(Self {
             number: i as u16 + 1,
             road: other.road,
-            state: State { s, v: f64::from(other.speed) / 10.0 },
+            state,
             gone: false,
             script: other.script.clone(),
             wanted: 0.0,
             follower: Follower::default(),
             shield,
-            coming: None,
         })
     }
 
@@ -70,7 +70,7 @@ impl<'j> Driven<'j> {
 
     /// The plan of its shield, if it has one.
     pub(crate) fn plan(&self) -> Option<Option<Plan>> {
-        self.shield.as_ref().map(Shield::plan)
+        self.shield.as_ref().map(|(shield, _)| shield.plan())
     }
 
     /// Decides for the next period, number `step`; a command of its shield takes effect after the share `late` of
@@ -80,10 +80,10 @@ impl<'j> Driven<'j> {
         let limits = contract.other();
         let wanted = share * f64::from(if share < 0.0 { limits.braking } else { limits.acceleration });
         match (&mut self.shield, view) {
-            (Some(shield), Some(seen)) => {
+            (Some((shield, body)), Some(seen)) => {
                 let decision = shield.filter(seen.now, &seen.observation(), wanted as f32);
                 let late = late * f64::from(contract.latency());
-                self.coming = Some((late, decision.acceleration.into()));
+                body.command(decision.acceleration, late);
             }
             _ => self.wanted = wanted,
         }
@@ -97,23 +97,15 @@ impl<'j> Driven<'j> {
         ego: State,
         time: f64,
     ) {
-        let cap = f64::from(contract.other().max_speed);
-        let mut left = time;
-        if let Some((late, command)) = self.coming {
-            if late <= time {
-                self.state = self.state.after(self.wanted, late, cap);
-                self.wanted = command;
-                self.coming = None;
-                left -= late;
-            } else {
-                self.coming = Some((late - time, command));
-            }
+        if let Some((_, body)) = &mut self.shield {
+            body.advance(&Truth::as_contracted(contract), time);
+            self.state = body.state;
+            return;
         }
-        let acceleration = match self.shield {
-            Some(_) => self.wanted,
-            None => self.follower.keep_distance(contract, zones, (ego, self.state), (self.wanted, time)),
-        };
-        self.state = self.state.after(acceleration, left, cap);
+        let cap = f64::from(contract.other().max_speed);
+        let wanted = (self.wanted, time);
+        let acceleration = self.follower.keep_distance(contract, zones, (ego, self.state), wanted);
+        self.state = self.state.after(acceleration, time, cap);
     }
 
     /// Notes whether it has left its zones, and its road of `length` metres.

@@ -1,12 +1,12 @@
-//! The ego as it really is: commands take effect late, and no harder than the vehicle can.
+//! A vehicle that is commanded: commands take effect late, and no harder than the vehicle can.
 
 use super::motion::State;
 use crate::vehicle::Truth;
 use std::collections::VecDeque;
 
-/// The ego.
+/// The ego, or another that has a shield.
 #[derive(Clone, Debug)]
-pub(crate) struct Ego {
+pub(crate) struct Commanded {
     pub(crate) state: State,
     /// What the actuator does, in m/s².
     acceleration: f64,
@@ -14,7 +14,7 @@ pub(crate) struct Ego {
     coming: VecDeque<(f64, f64)>,
 }
 
-impl Ego {
+impl Commanded {
     pub(crate) fn new(state: State) -> Self {
         Self { state, acceleration: 0.0, coming: VecDeque::new() }
     }
@@ -25,7 +25,7 @@ impl Ego {
         self.coming.push_back((late.max(last), command.into()));
     }
 
-    /// Moves on by `time` (s).
+    /// Moves on by `time` (s), within what is true of the vehicle.
     pub(crate) fn advance(&mut self, truth: &Truth, mut time: f64) {
         while let Some(&(left, command)) = self.coming.front().filter(|(left, _)| *left <= time) {
             self.coast(truth, left);
@@ -53,7 +53,7 @@ mod tests {
     #[test]
     fn commands_take_effect_in_their_order_and_within_what_is_achieved() {
         let truth = Truth { braking: 2.0, ..Truth::as_contracted(&Contract::WORST_CASE) };
-        let mut ego = Ego::new(State { s: 0.0, v: 10.0 });
+        let mut ego = Commanded::new(State { s: 0.0, v: 10.0 });
         ego.command(1.0, 0.1);
         ego.advance(&truth, 0.1);
         assert!((ego.state.v - 10.0).abs() < 1e-9);
