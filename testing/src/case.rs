@@ -69,7 +69,7 @@ pub struct Noise {
     pub jitter: Level,
     /// How far vehicles are beside their routes.
     pub beside: Level,
-    /// Of 64 observations of a track, so many are missing; half as many of the ego.
+    /// Of 64 observations of a track, so many are missing, for 1, 2, 4, 8 or 16 periods each; half as many of the ego.
     pub missing: u8,
 }
 
@@ -119,7 +119,8 @@ impl Noise {
 
     /// Whether something is missing that is missing so many of 64 times.
     pub(crate) fn misses(&self, of_64: u8, step: u32, channel: u32) -> bool {
-        self.bits(step, channel) % 64 < u64::from(of_64)
+        let burst = u32::from(self.seed % 5);
+        self.bits(step >> burst, channel) % 64 < u64::from(of_64)
     }
 }
 
@@ -141,7 +142,11 @@ impl fmt::Display for Case {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "Place: {}.", self.place)?;
         let (before, speed) = (tenths(self.before.into()), tenths(self.speed.into()));
-        writeln!(f, "Ego: {before} m before its line at {speed} m/s; {}.", self.proposals)?;
+        writeln!(
+            f,
+            "Ego: {before} m before its line at {speed} m/s; {}.",
+            self.proposals
+        )?;
         for (number, other) in (1..).zip(&self.others) {
             writeln!(f, "Other {number}: {other}.")?;
         }
@@ -188,9 +193,15 @@ impl fmt::Display for Proposals {
         match self {
             Self::Policy => f.write_str("the policy proposes"),
             Self::Reckless => f.write_str("full acceleration is proposed"),
-            Self::Script(script) if script.is_empty() => f.write_str("full acceleration is proposed"),
+            Self::Script(script) if script.is_empty() => {
+                f.write_str("full acceleration is proposed")
+            }
             Self::Script(script) => {
-                write!(f, "is proposed what {}, then full acceleration", Script(script))
+                write!(
+                    f,
+                    "is proposed what {}, then full acceleration",
+                    Script(script)
+                )
             }
         }
     }
@@ -209,10 +220,22 @@ impl fmt::Display for Level {
 
 impl fmt::Display for Noise {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if *self == (Self { seed: self.seed, ..Self::NONE }) {
+        if *self
+            == (Self {
+                seed: self.seed,
+                ..Self::NONE
+            })
+        {
             return f.write_str("Sensors are exact, commands act at once.");
         }
-        let Self { seed, errors, delay, jitter, beside, missing } = self;
+        let Self {
+            seed,
+            errors,
+            delay,
+            jitter,
+            beside,
+            missing,
+        } = self;
         write!(
             f,
             "Sensor errors: {errors}; delay: {delay}; jitter: {jitter}; beside the route: {beside}; \
@@ -229,14 +252,28 @@ mod tests {
     #[test]
     fn a_case_reads_as_sentences() {
         let case = Case {
-            place: Place { shape: Shape::RightAngle, arm: 80, tolerance: 0, right: Right::Nobody },
+            place: Place {
+                shape: Shape::RightAngle,
+                arm: 80,
+                tolerance: 0,
+                right: Right::Nobody,
+            },
             before: 205,
             speed: 80,
             others: vec![Other {
                 road: Road::FirstLorry,
                 before: 300,
                 speed: 100,
-                script: vec![Push { periods: 20, quarters: -4 }, Push { periods: 5, quarters: 2 }],
+                script: vec![
+                    Push {
+                        periods: 20,
+                        quarters: -4,
+                    },
+                    Push {
+                        periods: 5,
+                        quarters: 2,
+                    },
+                ],
             }],
             proposals: Proposals::Reckless,
             noise: Noise::NONE,
@@ -253,7 +290,16 @@ mod tests {
 
     #[test]
     fn scripts_are_read_piece_by_piece() {
-        let script = [Push { periods: 2, quarters: 4 }, Push { periods: 1, quarters: -1 }];
+        let script = [
+            Push {
+                periods: 2,
+                quarters: 4,
+            },
+            Push {
+                periods: 1,
+                quarters: -1,
+            },
+        ];
         let read: Vec<_> = (0..4).map(|step| quarters(&script, step)).collect();
         assert_eq!(read, [Some(4), Some(4), Some(-1), None]);
     }

@@ -32,7 +32,12 @@ pub(crate) fn hunt<S: Strategy>(
 ) -> Catch<S::Value> {
     let mut runner = runner(id, seed);
     let mut whys: BTreeMap<String, u32> = BTreeMap::new();
-    let mut caught = Catch { judged: 0, skipped: 0, why: None, failure: None };
+    let mut caught = Catch {
+        judged: 0,
+        skipped: 0,
+        why: None,
+        failure: None,
+    };
     while caught.judged < cases && caught.skipped < 20 * cases {
         let Ok(mut tree) = strategy.new_tree(&mut runner) else {
             caught.skipped += 1;
@@ -51,7 +56,10 @@ pub(crate) fn hunt<S: Strategy>(
             }
         }
     }
-    caught.why = whys.into_iter().max_by_key(|(_, count)| *count).map(|(why, _)| why);
+    caught.why = whys
+        .into_iter()
+        .max_by_key(|(_, count)| *count)
+        .map(|(why, _)| why);
     caught
 }
 
@@ -84,7 +92,10 @@ fn guarded<T>(test: &impl Fn(&T) -> Verdict, value: &T) -> Verdict {
     catch_unwind(AssertUnwindSafe(|| test(value))).unwrap_or_else(|panic| {
         let text = panic.downcast_ref::<&str>().map(ToString::to_string);
         let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
-        Err(Miss::Broken(format!("panicked: {}", text.unwrap_or_default())))
+        Err(Miss::Broken(format!(
+            "panicked: {}",
+            text.unwrap_or_default()
+        )))
     })
 }
 
@@ -110,7 +121,10 @@ pub(crate) fn runner(id: &str, seed: u64) -> TestRunner {
         bytes[8 + i % 24] ^= byte.rotate_left((i / 24) as u32);
     }
     let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &bytes);
-    let config = Config { failure_persistence: None, ..Config::default() };
+    let config = Config {
+        failure_persistence: None,
+        ..Config::default()
+    };
     TestRunner::new_with_rng(config, rng)
 }
 
@@ -121,7 +135,11 @@ mod tests {
     #[test]
     fn the_simplest_failing_value_is_found() {
         let found = hunt(("id", 1, 1000), &(0_u32..1000), |x| {
-            if *x >= 77 { Err(Miss::broken(x)) } else { Ok(()) }
+            if *x >= 77 {
+                Err(Miss::broken(x))
+            } else {
+                Ok(())
+            }
         });
         assert_eq!(found.failure, Some((77, "77".to_owned())));
     }
@@ -130,7 +148,9 @@ mod tests {
     fn a_panic_fails_and_what_does_not_count_is_counted() {
         let found = hunt(("id", 1, 10), &(0_u32..1000), |_| panic!("no {}", 7));
         assert_eq!(found.failure.unwrap().1, "panicked: no 7");
-        let found = hunt(("id", 1, 10), &(0_u32..1000), |x| Err(Miss::skip(format!("{x}.5 m"))));
+        let found = hunt(("id", 1, 10), &(0_u32..1000), |x| {
+            Err(Miss::skip(format!("{x}.5 m")))
+        });
         assert_eq!((found.judged, found.skipped), (0, 200));
         assert_eq!(found.why.unwrap(), "# m");
     }

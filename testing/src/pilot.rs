@@ -19,7 +19,11 @@ where
     R: Clone,
 {
     fn clone(&self) -> Self {
-        Self { asked: self.asked.clone(), shield: self.shield.clone(), last: self.last }
+        Self {
+            asked: self.asked.clone(),
+            shield: self.shield.clone(),
+            last: self.last,
+        }
     }
 }
 
@@ -51,7 +55,9 @@ impl<'j, 'w, R: Rules + Clone> Pilot<'j, 'w, R> {
 
     /// What the shield would make of `proposal` (m/s²); changes nothing.
     pub(crate) fn probe(&self, seen: &Seen, proposal: f32) -> Decision {
-        self.shield.clone().filter(seen.now, &seen.observation(), proposal)
+        self.shield
+            .clone()
+            .filter(seen.now, &seen.observation(), proposal)
     }
 
     /// Whether there is a plan.

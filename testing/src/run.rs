@@ -48,7 +48,9 @@ pub(crate) struct Call<'c, 'j, 'w, R: Rules> {
 /// # Errors
 /// The vehicle's footprint is out of range.
 pub(crate) fn junction(case: &Case, subject: &Subject<'_>) -> Result<TestJunction, Miss> {
-    case.place.junction(subject.vehicle.footprint).map_err(Miss::skip)
+    case.place
+        .junction(subject.vehicle.footprint)
+        .map_err(Miss::skip)
 }
 
 /// What is proposed at period number `step`.
@@ -59,7 +61,14 @@ pub(crate) fn proposal(case: &Case, contract: &Contract, step: u32) -> Option<f3
         Proposals::Reckless => Some(ego.acceleration),
         Proposals::Script(script) => {
             let share = f32::from(quarters(script, step).unwrap_or(4)) / 4.0;
-            Some(share * if share < 0.0 { ego.braking } else { ego.acceleration })
+            Some(
+                share
+                    * if share < 0.0 {
+                        ego.braking
+                    } else {
+                        ego.acceleration
+                    },
+            )
         }
     }
 }
@@ -77,15 +86,24 @@ pub(crate) fn drive<'j, R: Rules + Clone>(
     let contract = subject.contract;
     let mut pilot = Pilot::<R>::enter(subject.policy, contract, junction).map_err(Miss::skip)?;
     let footprint = subject.vehicle.footprint;
-    let mut world = World::new((case, junction), footprint, (&contract, truth)).map_err(Miss::skip)?;
+    let mut world =
+        World::new((case, junction), footprint, (&contract, truth)).map_err(Miss::skip)?;
     while let Some(seen) = world.look() {
         if world.step == 0 {
-            pilot.ready(&seen).map_err(|why| Miss::skip(format!("not ready: {why}")))?;
+            pilot
+                .ready(&seen)
+                .map_err(|why| Miss::skip(format!("not ready: {why}")))?;
         }
         let proposal = proposal(case, &contract, world.step);
         let before = pilot.clone();
         let decision = pilot.decide(&seen, proposal);
-        watch(&Call { seen: &seen, proposal, before: &before, decision: &decision, world: &world })?;
+        watch(&Call {
+            seen: &seen,
+            proposal,
+            before: &before,
+            decision: &decision,
+            world: &world,
+        })?;
         let start = world.step == 0;
         world.go(decision.acceleration);
         if start && world.others.iter().any(|other| other.plan() == Some(None)) {
@@ -110,7 +128,11 @@ pub(crate) fn overlap<R: Rules + Clone>(
 }
 
 /// The case in words, and what happens in it.
-pub(crate) fn explain<R: Rules + Clone>(subject: &Subject<'_>, case: &Case, truth: &Truth) -> String {
+pub(crate) fn explain<R: Rules + Clone>(
+    subject: &Subject<'_>,
+    case: &Case,
+    truth: &Truth,
+) -> String {
     let Ok(junction) = junction(case, subject) else {
         return case.to_string();
     };

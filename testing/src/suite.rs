@@ -34,7 +34,11 @@ impl<'w> Suite<'w> {
         let vehicle = Vehicle::new(Footprint::PAPER);
         Self {
             context: Context {
-                subject: Subject { policy, contract, vehicle },
+                subject: Subject {
+                    policy,
+                    contract,
+                    vehicle,
+                },
                 cases: CASES,
                 seed: SEED,
                 most_shielded: MOST_SHIELDED,
@@ -81,12 +85,20 @@ impl<'w, R: Rules + Clone + 'static> Suite<'w, R> {
     /// planted. See [`cede_controller::dangerous`].
     pub fn with_rules<Q: Rules + Clone + 'static>(self) -> Suite<'w, Q> {
         let Self { context, only, .. } = self;
-        Suite { context, only, rules: PhantomData }
+        Suite {
+            context,
+            only,
+            rules: PhantomData,
+        }
     }
 
     /// Runs the checks, one after the other, and tells `watch` of each outcome as it comes.
     pub fn run_watched(self, mut watch: impl FnMut(&Outcome)) -> Report {
-        let wanted = |id: &str| self.only.as_ref().is_none_or(|only| only.iter().any(|o| o == id));
+        let wanted = |id: &str| {
+            self.only
+                .as_ref()
+                .is_none_or(|only| only.iter().any(|o| o == id))
+        };
         let mut outcomes = Vec::new();
         for check in all::<R>().iter().filter(|check| wanted(check.id)) {
             let start = Instant::now();
@@ -112,10 +124,17 @@ impl<'w, R: Rules + Clone + 'static> Suite<'w, R> {
 
     /// The subject in words.
     fn named(&self) -> String {
-        let Subject { policy, contract, vehicle } = &self.context.subject;
+        let Subject {
+            policy,
+            contract,
+            vehicle,
+        } = &self.context.subject;
         let weights = policy.weights();
         let (width, features) = (weights.network().width(), weights.features().name());
-        let Footprint { length, width: side } = vehicle.footprint;
+        let Footprint {
+            length,
+            width: side,
+        } = vehicle.footprint;
         format!(
             "A policy of width {width} with the features `{features}`, a contract with ego.braking = {} and latency = {}, \
              a vehicle of {length} m by {side} m",
@@ -128,5 +147,8 @@ impl<'w, R: Rules + Clone + 'static> Suite<'w, R> {
 /// Id and sentence of every check, in the order in which [`Suite::run`] runs them.
 #[must_use]
 pub fn checks() -> Vec<(&'static str, &'static str)> {
-    all::<Sound>().iter().map(|check| (check.id, check.sentence)).collect()
+    all::<Sound>()
+        .iter()
+        .map(|check| (check.id, check.sentence))
+        .collect()
 }

@@ -29,7 +29,9 @@ impl Moment {
         Self {
             time: world.time(),
             ego: (world.ego.state.s, world.ego.state.v),
-            others: others.map(|other| (other.number, other.road, other.state.s, other.state.v)).collect(),
+            others: others
+                .map(|other| (other.number, other.road, other.state.s, other.state.v))
+                .collect(),
             acceleration: decision.acceleration,
             cause: match decision.cause {
                 Cause::Policy => "accepted",
@@ -70,7 +72,10 @@ impl Trace {
 
     /// Metres past the beginning of the zone.
     fn past(&self, road: Road, s: f64) -> f64 {
-        let origin = match (self.zones[road as usize], self.zones[self.reference as usize]) {
+        let origin = match (
+            self.zones[road as usize],
+            self.zones[self.reference as usize],
+        ) {
             (Some([_, _, other]), _) => other,
             (None, Some([ego, ..])) => ego,
             (None, None) => 80.0,
@@ -85,7 +90,11 @@ impl Trace {
             let at = metres + BEFORE;
             if at >= 0.0 && at < WIDTH as f64 {
                 let place = &mut row[at as usize];
-                *place = if *place == b' ' || *place == b'|' { letter } else { b'*' };
+                *place = if *place == b' ' || *place == b'|' {
+                    letter
+                } else {
+                    b'*'
+                };
             }
         };
         mark(0.0, b'|');
@@ -105,15 +114,32 @@ impl fmt::Display for Trace {
             "One column is 1 m of the road of each. E: the ego, 1, 2, …: the others, *: two at once; \
              |: where the zone begins and where the ego has left it."
         )?;
-        writeln!(f, "{:>6} {:WIDTH$} {:>8} {:>7} {:9} others' m/s", "s", "", "ego m/s", "m/s²", "")?;
+        writeln!(
+            f,
+            "{:>6} {:WIDTH$} {:>8} {:>7} {:9} others' m/s",
+            "s", "", "ego m/s", "m/s²", ""
+        )?;
         let every = self.moments.len().div_ceil(ROWS).max(1);
         let last = self.moments.len().saturating_sub(1);
         let rows = self.moments.iter().enumerate();
         for (_, moment) in rows.filter(|(i, _)| i % every == 0 || *i == last) {
-            let speeds: Vec<_> = moment.others.iter().map(|(.., v)| format!("{v:.1}")).collect();
-            let Moment { time, ego: (_, v), acceleration, cause, .. } = moment;
+            let speeds: Vec<_> = moment
+                .others
+                .iter()
+                .map(|(.., v)| format!("{v:.1}"))
+                .collect();
+            let Moment {
+                time,
+                ego: (_, v),
+                acceleration,
+                cause,
+                ..
+            } = moment;
             let (row, speeds) = (self.row(moment), speeds.join(" "));
-            writeln!(f, "{time:6.2} {row} {v:8.1} {acceleration:7.2} {cause:9} {speeds}")?;
+            writeln!(
+                f,
+                "{time:6.2} {row} {v:8.1} {acceleration:7.2} {cause:9} {speeds}"
+            )?;
         }
         match self.overlap {
             None => Ok(()),
@@ -124,7 +150,14 @@ impl fmt::Display for Trace {
 
 impl fmt::Display for Overlap {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { other, time, speeds: [ego, its] } = self;
-        write!(f, "the ego ({ego:.1} m/s) and other {other} ({its:.1} m/s) overlap after {time:.2} s")
+        let Self {
+            other,
+            time,
+            speeds: [ego, its],
+        } = self;
+        write!(
+            f,
+            "the ego ({ego:.1} m/s) and other {other} ({its:.1} m/s) overlap after {time:.2} s"
+        )
     }
 }

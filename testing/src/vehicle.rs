@@ -121,19 +121,44 @@ impl Vehicle {
         let ego = contract.ego();
         let more = |field, contract: f32, vehicle: Option<f32>, measured| {
             let vehicle = vehicle.filter(|vehicle| contract > *vehicle)?;
-            Some(Bold { field, contract, vehicle, measured })
+            Some(Bold {
+                field,
+                contract,
+                vehicle,
+                measured,
+            })
         };
         let less = |field, contract: f32, vehicle: Option<f32>, measured| {
             let vehicle = vehicle.filter(|vehicle| contract < *vehicle)?;
-            Some(Bold { field, contract, vehicle, measured })
+            Some(Bold {
+                field,
+                contract,
+                vehicle,
+                measured,
+            })
         };
         [
             more("ego.braking", ego.braking, self.braking, "braking"),
             less("latency", contract.latency(), self.latency, "latency"),
             more("ego.go", ego.go, self.acceleration, "acceleration"),
-            more("ego.acceleration", ego.acceleration, self.acceleration, "acceleration"),
-            less("position_error", contract.position_error(), self.position_error, "position_error"),
-            less("speed_error", contract.speed_error(), self.speed_error, "speed_error"),
+            more(
+                "ego.acceleration",
+                ego.acceleration,
+                self.acceleration,
+                "acceleration",
+            ),
+            less(
+                "position_error",
+                contract.position_error(),
+                self.position_error,
+                "position_error",
+            ),
+            less(
+                "speed_error",
+                contract.speed_error(),
+                self.speed_error,
+                "speed_error",
+            ),
             less("jitter", contract.jitter(), self.jitter, "jitter"),
         ]
         .into_iter()
@@ -197,7 +222,12 @@ pub fn mend(contract: &Contract, bold: &[Bold]) -> Result<Contract, ContractErro
 
 impl std::fmt::Display for Bold {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { field, contract, vehicle, measured } = self;
+        let Self {
+            field,
+            contract,
+            vehicle,
+            measured,
+        } = self;
         write!(
             f,
             "change {field} in the contract from {contract} to {vehicle}: the vehicle's {measured} is {vehicle}"

@@ -20,7 +20,11 @@ pub(super) fn door<R: Rules + Clone>(context: &Context<'_>, id: &'static str) ->
         let mut flown = approach(policy, contract, &junction).map_err(Miss::skip)?;
         let mut last = None;
         for call in &calls.calls {
-            let AnyCall { now, seen, proposal } = call;
+            let AnyCall {
+                now,
+                seen,
+                proposal,
+            } = call;
             let new = last.is_none_or(|last| *now > last);
             last = last.max(Some(*now));
             let _ = pilot.ready(&seen_at(call));
@@ -37,13 +41,21 @@ pub(super) fn door<R: Rules + Clone>(context: &Context<'_>, id: &'static str) ->
         }
         Ok(())
     };
-    let caught = hunt((id, context.seed, context.cases), &strategies::calls(), test);
+    let caught = hunt(
+        (id, context.seed, context.cases),
+        &strategies::calls(),
+        test,
+    );
     context.found(caught, ToString::to_string, |_| None)
 }
 
 fn seen_at(call: &AnyCall) -> Seen {
     let AnyCall { now, seen, .. } = call;
-    Seen { now: *now, ego: seen.ego, tracks: seen.tracks.clone() }
+    Seen {
+        now: *now,
+        ego: seen.ego,
+        tracks: seen.tracks.clone(),
+    }
 }
 
 /// A finite acceleration within the contract's, and a margin that is a number.
@@ -63,17 +75,34 @@ fn admissible(contract: &Contract, decision: &Decision) -> Verdict {
 
 /// An ego or a proposal of which nothing can be believed is named.
 fn named(call: &AnyCall, decision: &Decision) -> Verdict {
-    let of_ego = matches!(decision.fault, Some(Fault::Input(InputFault { subject: Subject::Ego, .. })));
+    let of_ego = matches!(
+        decision.fault,
+        Some(Fault::Input(InputFault {
+            subject: Subject::Ego,
+            ..
+        }))
+    );
     if unbelievable(&call.seen.ego) && !of_ego {
-        return Err(Miss::Broken(format!("the ego's state is impossible, and the fault is {:?}", decision.fault)));
+        return Err(Miss::Broken(format!(
+            "the ego's state is impossible, and the fault is {:?}",
+            decision.fault
+        )));
     }
     let mut others = call.seen.tracks.iter();
     let odd = others.any(|track| {
-        let vehicle = |s| Vehicle { s, speed: track.speed, pose: track.pose };
-        track.candidates().any(|candidate| unbelievable(&vehicle(candidate.s)))
+        let vehicle = |s| Vehicle {
+            s,
+            speed: track.speed,
+            pose: track.pose,
+        };
+        track
+            .candidates()
+            .any(|candidate| unbelievable(&vehicle(candidate.s)))
     });
     if odd && decision.fault.is_none() {
-        return Err(Miss::broken("a track's state is impossible, and no fault is named"));
+        return Err(Miss::broken(
+            "a track's state is impossible, and no fault is named",
+        ));
     }
     Ok(())
 }

@@ -18,7 +18,10 @@ pub(super) fn fits(context: &Context<'_>, _: &'static str) -> Found {
     };
     let fields: Vec<_> = bold.iter().map(|bold| bold.field).collect();
     let failure = Failure {
-        message: format!("the contract is bolder than the vehicle in {}", fields.join(", ")),
+        message: format!(
+            "the contract is bolder than the vehicle in {}",
+            fields.join(", ")
+        ),
         mend: Some(format!("{}{more}", named.join("; "))),
         case: None,
     };

@@ -2,9 +2,7 @@
 
 use super::{Context, Found};
 use crate::case::Case;
-use crate::hunt::hunt;
 use crate::run::{Call, Miss, Verdict, drive, explain, junction, overlap};
-use crate::strategies;
 use crate::subject::Subject;
 use crate::vehicle::{Bold, Truth, mend};
 use cede_controller::dangerous::Rules;
@@ -19,7 +17,10 @@ pub(super) fn no_overlap<R: Rules + Clone>(context: &Context<'_>, id: &'static s
 }
 
 /// No overlap, with the contract's numbers.
-pub(super) fn no_overlap_contracted<R: Rules + Clone>(context: &Context<'_>, id: &'static str) -> Found {
+pub(super) fn no_overlap_contracted<R: Rules + Clone>(
+    context: &Context<'_>,
+    id: &'static str,
+) -> Found {
     overlaps::<R>(context, id, &context.subject.as_contracted())
 }
 
@@ -29,9 +30,11 @@ fn overlaps<R: Rules + Clone>(context: &Context<'_>, id: &'static str, truth: &T
         None => Ok(()),
         Some(overlap) => Err(Miss::broken(overlap)),
     };
-    let caught = hunt((id, context.seed, context.cases), &strategies::case(&subject.contract), test);
+    let caught = context.hunted(id, test);
     let explain = |case: &Case| explain::<R>(subject, case, truth);
-    context.found(caught, explain, |case| Some(mend_of::<R>(subject, case, truth)))
+    context.found(caught, explain, |case| {
+        Some(mend_of::<R>(subject, case, truth))
+    })
 }
 
 /// Which number of the contract to change so that `case` has no overlap, tried in the closed loop.
@@ -41,7 +44,10 @@ fn mend_of<R: Rules + Clone>(subject: &Subject<'_>, case: &Case, truth: &Truth) 
         let Ok(contract) = mend(&subject.contract, bold) else {
             return false;
         };
-        let mended = Subject { contract, ..*subject };
+        let mended = Subject {
+            contract,
+            ..*subject
+        };
         !matches!(overlap::<R>(&mended, case, truth), Ok(Some(_)))
     };
     if *truth == subject.as_contracted() || bold.is_empty() {
@@ -81,8 +87,13 @@ fn at<R: Rules>(call: &Call<'_, '_, '_, R>, what: impl std::fmt::Display) -> Mis
 pub(super) fn plan<R: Rules + Clone>(context: &Context<'_>, id: &'static str) -> Found {
     let truth = context.subject.as_contracted();
     always::<R>(context, id, &truth, |call| {
-        let none = call.decision.plan.is_none() || call.decision.cause == Cause::Fallback(Fault::NoPlan);
-        if none { Err(at(call, format_args!("no plan; {}", call.decision))) } else { Ok(()) }
+        let none =
+            call.decision.plan.is_none() || call.decision.cause == Cause::Fallback(Fault::NoPlan);
+        if none {
+            Err(at(call, format_args!("no plan; {}", call.decision)))
+        } else {
+            Ok(())
+        }
     })
 }
 
@@ -91,12 +102,18 @@ pub(super) fn no_false_breach<R: Rules + Clone>(context: &Context<'_>, id: &'sta
     let truth = context.subject.as_contracted();
     always::<R>(context, id, &truth, |call| match call.decision.breach {
         None => Ok(()),
-        Some(breach) => Err(at(call, format_args!("{breach:?}, though everybody keeps the contract"))),
+        Some(breach) => Err(at(
+            call,
+            format_args!("{breach:?}, though everybody keeps the contract"),
+        )),
     })
 }
 
 /// The vehicle as it was measured does what it is commanded.
-pub(super) fn vehicle_keeps_contract<R: Rules + Clone>(context: &Context<'_>, id: &'static str) -> Found {
+pub(super) fn vehicle_keeps_contract<R: Rules + Clone>(
+    context: &Context<'_>,
+    id: &'static str,
+) -> Found {
     let truth = context.subject.measured();
     let mut found = always::<R>(context, id, &truth, |call| match call.decision.breach {
         Some(Breach::Ego) => Err(at(call, "the ego deviated from its commands")),
@@ -125,6 +142,9 @@ pub(super) fn speed_limit<R: Rules + Clone>(context: &Context<'_>, id: &'static 
         if speed <= limit + ROUNDING {
             return Ok(());
         }
-        Err(at(call, format_args!("{speed:.3} m/s, and ego.max_speed = {limit}")))
+        Err(at(
+            call,
+            format_args!("{speed:.3} m/s, and ego.max_speed = {limit}"),
+        ))
     })
 }

@@ -19,16 +19,25 @@ pub(super) fn comfort<R: Rules + Clone>(context: &Context<'_>, id: &'static str)
     let hard = -0.8 * subject.contract.ego().braking;
     let test = |case: &Case| {
         let junction = junction(case, subject)?;
-        drive::<R>(subject, (case, &junction), &subject.as_contracted(), |call| {
-            if call.world.is_through() || call.world.others.is_empty() {
-                return Ok(());
-            }
-            let [all, shielded, braking] = counts.get();
-            let is_shielded = matches!(call.decision.cause, Cause::Shielded(_));
-            let brakes = call.decision.acceleration < hard;
-            counts.set([all + 1, shielded + u32::from(is_shielded), braking + u32::from(brakes)]);
-            Ok(())
-        })
+        drive::<R>(
+            subject,
+            (case, &junction),
+            &subject.as_contracted(),
+            |call| {
+                if call.world.is_through() || call.world.others.is_empty() {
+                    return Ok(());
+                }
+                let [all, shielded, braking] = counts.get();
+                let is_shielded = matches!(call.decision.cause, Cause::Shielded(_));
+                let brakes = call.decision.acceleration < hard;
+                counts.set([
+                    all + 1,
+                    shielded + u32::from(is_shielded),
+                    braking + u32::from(brakes),
+                ]);
+                Ok(())
+            },
+        )
         .map(drop)
     };
     let caught = hunt((id, context.seed, context.cases), &ordinary, test);
@@ -37,7 +46,10 @@ pub(super) fn comfort<R: Rules + Clone>(context: &Context<'_>, id: &'static str)
     let share = |count: u32| f64::from(count) / f64::from(all.max(1));
     found.numbers = vec![
         ("share of shielded steps".to_owned(), share(shielded)),
-        ("share of steps with hard braking".to_owned(), share(braking)),
+        (
+            "share of steps with hard braking".to_owned(),
+            share(braking),
+        ),
     ];
     if share(shielded) > context.most_shielded && found.judged > 0 {
         found.verdict = Verdict::Failed(Failure {

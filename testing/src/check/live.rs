@@ -11,7 +11,12 @@ use cede_controller::{Contract, FREE};
 
 /// Nobody else is there.
 pub(super) fn alone<R: Rules + Clone>(context: &Context<'_>, _: &'static str) -> Found {
-    let shapes = [Shape::RightAngle, Shape::LeftTurn, Shape::Merging(30), Shape::SBend];
+    let shapes = [
+        Shape::RightAngle,
+        Shape::LeftTurn,
+        Shape::Merging(30),
+        Shape::SBend,
+    ];
     let mend = "check ego.go and ego.max_speed of the contract: with nobody there, the ego goes as they let it";
     let cases: Vec<_> = shapes.map(|shape| case(context, shape, Vec::new())).into();
     judged::<R>(context, &cases, mend)
@@ -21,7 +26,12 @@ pub(super) fn alone<R: Rules + Clone>(context: &Context<'_>, _: &'static str) ->
 pub(super) fn after<R: Rules + Clone>(context: &Context<'_>, _: &'static str) -> Found {
     let contract = &context.subject.contract;
     let speed = (contract.other().max_speed * 5.0).min(80.0) as u16;
-    let other = |before| Other { road: Road::First, before, speed, script: go_on() };
+    let other = |before| Other {
+        road: Road::First,
+        before,
+        speed,
+        script: go_on(),
+    };
     let cases: Vec<_> = [Shape::RightAngle, Shape::Skew(60), Shape::LeftTurn]
         .into_iter()
         .flat_map(|shape| [50, 150].map(|before| case(context, shape, vec![other(before)])))
@@ -36,12 +46,24 @@ pub(super) fn courteous<R: Rules + Clone>(context: &Context<'_>, _: &'static str
     let contract = &context.subject.contract;
     let waits = |shape| match contract.precedence() {
         Some(rule) => {
-            let before = i16::try_from((rule.distance * 10.0) as u16).unwrap_or(i16::MAX).saturating_add(500);
-            Some(Other { road: Road::First, before, speed: 40, script: go_on() })
+            let before = i16::try_from((rule.distance * 10.0) as u16)
+                .unwrap_or(i16::MAX)
+                .saturating_add(500);
+            Some(Other {
+                road: Road::First,
+                before,
+                speed: 40,
+                script: go_on(),
+            })
         }
         None => {
             let metres = courtesy(context, shape)?;
-            Some(Other { road: Road::First, before: (metres * 10.0) as i16, speed: 0, script: Vec::new() })
+            Some(Other {
+                road: Road::First,
+                before: (metres * 10.0) as i16,
+                speed: 0,
+                script: Vec::new(),
+            })
         }
     };
     let shapes = [Shape::RightAngle, Shape::Skew(60), Shape::LeftTurn];
@@ -58,7 +80,10 @@ pub(super) fn courteous<R: Rules + Clone>(context: &Context<'_>, _: &'static str
 
 /// It goes on at its speed, and accelerates after a stop.
 fn go_on() -> Vec<Push> {
-    vec![Push { periods: 255, quarters: 1 }]
+    vec![Push {
+        periods: 255,
+        quarters: 1,
+    }]
 }
 
 /// How far (m) before its zone another at rest has to be, so that the ego can clear its own from rest at its line.
@@ -67,7 +92,10 @@ fn courtesy(context: &Context<'_>, shape: Shape) -> Option<f64> {
     let (ego, other) = (contract.ego(), contract.other());
     let place = place(contract, shape);
     let junction = place.junction(context.subject.vehicle.footprint).ok()?;
-    let zone = junction.conflict(Road::Own.path(), Road::First.path())?.zones().next()?;
+    let zone = junction
+        .conflict(Road::Own.path(), Road::First.path())?
+        .zones()
+        .next()?;
     let way = zone.ego.to - zone.ego.from + 4.0 * contract.position_error() + 2.0;
     let clears = time(way, ego.go, ego.max_speed * 0.8) + 3.0 * contract.period();
     // Twice the time: the ego need not go as hard as it can, nor start at its line.
@@ -78,7 +106,11 @@ fn courtesy(context: &Context<'_>, shape: Shape) -> Option<f64> {
 /// Seconds for `way` metres from rest.
 fn time(way: f32, acceleration: f32, most: f32) -> f32 {
     let ramp = most * most / (2.0 * acceleration);
-    if way < ramp { (2.0 * way / acceleration).sqrt() } else { most / acceleration + (way - ramp) / most }
+    if way < ramp {
+        (2.0 * way / acceleration).sqrt()
+    } else {
+        most / acceleration + (way - ramp) / most
+    }
 }
 
 /// Metres in `time` seconds from rest.
@@ -89,14 +121,20 @@ fn reach(time: f32, acceleration: f32, most: f32) -> f32 {
 
 fn place(contract: &Contract, shape: Shape) -> Place {
     let arm = strategies::arm(contract).max(200);
-    Place { shape, arm, tolerance: 10, right: Right::Nobody }
+    Place {
+        shape,
+        arm,
+        tolerance: 10,
+        right: Right::Nobody,
+    }
 }
 
 /// The ego 30 m before its line, at half its speed.
 fn case(context: &Context<'_>, shape: Shape, others: Vec<Other>) -> Case {
     let contract = &context.subject.contract;
     let ego = contract.ego();
-    let stop = ego.max_speed * ego.max_speed / (8.0 * ego.braking) + 2.0 * contract.period() * ego.max_speed;
+    let stop = ego.max_speed * ego.max_speed / (8.0 * ego.braking)
+        + 2.0 * contract.period() * ego.max_speed;
     Case {
         place: place(contract, shape),
         before: (10.0 * stop.max(25.0)).min(1500.0) as u16,
@@ -142,9 +180,13 @@ fn judged<R: Rules + Clone>(context: &Context<'_>, cases: &[Case], mend: &str) -
     let judged = cases.len() as u32 - skipped;
     let mut found = Found::new(Verdict::Passed, judged);
     if judged == 0 {
-        found.verdict = Verdict::Skipped("no plan is safe at the start of any of its cases".to_owned());
+        found.verdict =
+            Verdict::Skipped("no plan is safe at the start of any of its cases".to_owned());
     }
     found.skipped = skipped;
-    found.numbers = vec![("longest time (s)".to_owned(), longest), ("time allowed (s)".to_owned(), duration)];
+    found.numbers = vec![
+        ("longest time (s)".to_owned(), longest),
+        ("time allowed (s)".to_owned(), duration),
+    ];
     found
 }

@@ -46,7 +46,12 @@ pub(crate) struct Found {
 
 impl Found {
     fn new(verdict: Verdict, judged: u32) -> Self {
-        Self { verdict, judged, skipped: 0, numbers: Vec::new() }
+        Self {
+            verdict,
+            judged,
+            skipped: 0,
+            numbers: Vec::new(),
+        }
     }
 
     pub(crate) fn outcome(self, check: &Check, seconds: f64) -> Outcome {
@@ -187,9 +192,36 @@ impl Context<'_> {
         truth: &Truth,
         test: impl Fn(&Case) -> run::Verdict,
     ) -> Found {
-        let strategy = strategies::case(&self.subject.contract);
-        let caught = hunt((id, self.seed, self.cases), &strategy, test);
-        self.found(caught, |case| explain::<R>(&self.subject, case, truth), |_| None)
+        let caught = self.hunted(id, test);
+        self.found(
+            caught,
+            |case| explain::<R>(&self.subject, case, truth),
+            |_| None,
+        )
+    }
+
+    /// What `test` catches; of two vehicles, if that can be.
+    fn hunted(&self, id: &'static str, test: impl Fn(&Case) -> run::Verdict) -> Catch<Case> {
+        let contract = &self.subject.contract;
+        let mut caught = hunt(
+            (id, self.seed, self.cases),
+            &strategies::case(contract),
+            &test,
+        );
+        if caught
+            .failure
+            .as_ref()
+            .is_some_and(|(case, _)| case.others.len() > 1)
+        {
+            let many = self.cases.saturating_mul(4);
+            let two = hunt(
+                (id, self.seed, many),
+                &strategies::case_of_two(contract),
+                &test,
+            );
+            caught.failure = two.failure.or(caught.failure);
+        }
+        caught
     }
 
     /// The verdict of what was caught.
@@ -199,7 +231,12 @@ impl Context<'_> {
         explain: impl Fn(&T) -> String,
         mend: impl Fn(&T) -> Option<String>,
     ) -> Found {
-        let Catch { judged, skipped, why, failure } = caught;
+        let Catch {
+            judged,
+            skipped,
+            why,
+            failure,
+        } = caught;
         let verdict = match failure {
             Some((value, message)) => Verdict::Failed(Failure {
                 message,
@@ -211,11 +248,18 @@ impl Context<'_> {
                     "no case could be judged, so nothing is known: most often, {}",
                     why.unwrap_or_else(|| "no case could be drawn".to_owned())
                 ),
-                mend: Some("change the contract or the vehicle so that a drive can begin".to_owned()),
+                mend: Some(
+                    "change the contract or the vehicle so that a drive can begin".to_owned(),
+                ),
                 case: None,
             }),
             None => Verdict::Passed,
         };
-        Found { verdict, judged, skipped, numbers: Vec::new() }
+        Found {
+            verdict,
+            judged,
+            skipped,
+            numbers: Vec::new(),
+        }
     }
 }

@@ -28,7 +28,8 @@ pub(super) fn breach_named<R: Rules + Clone>(context: &Context<'_>, id: &'static
     }
     let gained = 0.25 * quarters * other.acceleration * contract.period() * (CALLS + 1) as f32;
     if quarters > 120.0 || gained > 0.5 * other.max_speed {
-        let why = "speed_error and slack hide an acceleration as hard as that, within the speed limit";
+        let why =
+            "speed_error and slack hide an acceleration as hard as that, within the speed limit";
         return Found::new(Verdict::Skipped(why.to_owned()), 0);
     }
     let cases = (strategies::case(&contract), strategies::script_outside());
@@ -36,7 +37,10 @@ pub(super) fn breach_named<R: Rules + Clone>(context: &Context<'_>, id: &'static
         case.others.truncate(1);
         case.noise = Noise::NONE;
         if let (Some(first), Some(other)) = (script.first_mut(), case.others.first_mut()) {
-            *first = Push { periods: first.periods, quarters: first.quarters.max(quarters as i8) };
+            *first = Push {
+                periods: first.periods,
+                quarters: first.quarters.max(quarters as i8),
+            };
             other.road = Road::First;
             other.speed = other.speed.min((contract.other().max_speed * 3.0) as u16);
             other.script = script;
@@ -53,10 +57,16 @@ pub(super) fn breach_named<R: Rules + Clone>(context: &Context<'_>, id: &'static
         let mut matters = true;
         drive::<R>(subject, (case, &junction), &truth, |call| {
             let (ego, others) = (call.world.ego.state.s, &call.world.others);
-            matters &= others.iter().all(|other| other.state.s < f64::from(zone.other.to));
+            matters &= others
+                .iter()
+                .all(|other| other.state.s < f64::from(zone.other.to));
             matters &= ego < f64::from(zone.ego.to);
             // A follower may have to brake instead of breaking the contract.
-            matters &= !crate::world::follower::is_ahead(zone, ego, others.first().map_or(0.0, |o| o.state.s));
+            matters &= !crate::world::follower::is_ahead(
+                zone,
+                ego,
+                others.first().map_or(0.0, |o| o.state.s),
+            );
             named |= call.decision.breach == Some(Breach::Other(1));
             if !matters {
                 return Err(Miss::skip("it has passed"));
@@ -64,7 +74,9 @@ pub(super) fn breach_named<R: Rules + Clone>(context: &Context<'_>, id: &'static
             if call.world.step < CALLS || named {
                 return Ok(());
             }
-            Err(Miss::broken("other 1 breaks the contract, and nobody reports it"))
+            Err(Miss::broken(
+                "other 1 breaks the contract, and nobody reports it",
+            ))
         })
         .map(drop)
     };

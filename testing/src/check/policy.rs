@@ -12,7 +12,12 @@ const SAME: f32 = 0.2;
 /// The policy's proposals depend on what it sees.
 pub(super) fn answers(context: &Context<'_>, _: &'static str) -> Found {
     let proposals = [Shape::RightAngle, Shape::LeftTurn].map(|shape| {
-        let place = Place { shape, arm: 80, tolerance: 10, right: Right::Nobody };
+        let place = Place {
+            shape,
+            arm: 80,
+            tolerance: 10,
+            right: Right::Nobody,
+        };
         let junction = place.junction(context.subject.vehicle.footprint).ok()?;
         proposals(context, &junction)
     });
@@ -32,20 +37,36 @@ fn judge(least: f32, most: f32, policy: Policy<'_>) -> Verdict {
     let features = policy.weights().features().name();
     let set = format!("its file says that it is told the features `{features}`");
     let (message, mend) = if most < least {
-        ("no encounter could be proposed to it".to_owned(), "check the vehicle's footprint".to_owned())
+        (
+            "no encounter could be proposed to it".to_owned(),
+            "check the vehicle's footprint".to_owned(),
+        )
     } else if most - least < SAME {
         let message = format!("the policy proposes {least:.2} to {most:.2} m/s², whatever it sees");
-        (message, format!("replace the policy file; check the training and the normalisation: {set}"))
+        (
+            message,
+            format!("replace the policy file; check the training and the normalisation: {set}"),
+        )
     } else if most < SAME {
         let message = format!("the policy never proposes to go: at most {most:.2} m/s²");
-        (message, format!("replace the policy file, or check the sign of its output: {set}"))
+        (
+            message,
+            format!("replace the policy file, or check the sign of its output: {set}"),
+        )
     } else if least > -SAME {
         let message = format!("the policy never proposes to brake: at least {least:.2} m/s²");
-        (message, format!("replace the policy file, or check the sign of its output: {set}"))
+        (
+            message,
+            format!("replace the policy file, or check the sign of its output: {set}"),
+        )
     } else {
         return Verdict::Passed;
     };
-    Verdict::Failed(Failure { message, mend: Some(mend), case: None })
+    Verdict::Failed(Failure {
+        message,
+        mend: Some(mend),
+        case: None,
+    })
 }
 
 /// What it proposes, for both at some distances and speeds.
@@ -55,7 +76,11 @@ fn proposals(context: &Context<'_>, junction: &TestJunction) -> Option<Vec<f32>>
     let speeds = [0.0, 3.0, 7.0, 11.0];
     let distances = [2.0, 8.0, 18.0, 35.0];
     let vehicle = |road: Road, s: f32, speed: f32| {
-        Some(Vehicle { s, speed, pose: junction.polyline(road.path())?.pose(s) })
+        Some(Vehicle {
+            s,
+            speed,
+            pose: junction.polyline(road.path())?.pose(s),
+        })
     };
     let mut proposals = Vec::new();
     for (own, its) in pairs(&distances, &distances) {
@@ -65,7 +90,10 @@ fn proposals(context: &Context<'_>, junction: &TestJunction) -> Option<Vec<f32>>
             let tracks = [Track::on(1, Road::First.path(), other)];
             let subject = &context.subject;
             let mut approach = approach(subject.policy, subject.contract, junction).ok()?;
-            proposals.push(approach.proposal(&Observation { ego, tracks: &tracks }));
+            proposals.push(approach.proposal(&Observation {
+                ego,
+                tracks: &tracks,
+            }));
         }
     }
     Some(proposals)

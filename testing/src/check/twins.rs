@@ -24,7 +24,10 @@ fn twins<'w, R: Rules + Clone>(
         let junction = junction(case, subject)?;
         let twin = Pilot::<R>::enter(subject.policy, subject.contract, &junction);
         let mut twin = twin.map_err(Miss::skip)?;
-        drive::<R>(subject, (case, &junction), &truth, |call| test(&mut twin, call)).map(drop)
+        drive::<R>(subject, (case, &junction), &truth, |call| {
+            test(&mut twin, call)
+        })
+        .map(drop)
     })
 }
 
@@ -47,7 +50,14 @@ fn same<R: Rules>(call: &Call<'_, '_, '_, R>, one: &Decision, two: &Decision) ->
         let cause = std::mem::discriminant(&decision.cause);
         let fault = decision.fault.map(|fault| std::mem::discriminant(&fault));
         let numbers = [decision.acceleration, decision.margin].map(f32::to_bits);
-        (numbers, decision.plan, cause, fault, decision.breach.is_some(), decision.unwatched.is_some())
+        (
+            numbers,
+            decision.plan,
+            cause,
+            fault,
+            decision.breach.is_some(),
+            decision.unwatched.is_some(),
+        )
     };
     if kind(one) == kind(two) {
         return Ok(());
@@ -89,7 +99,10 @@ pub(super) fn approach(context: &Context<'_>, id: &'static str) -> Found {
     let subject = &context.subject;
     let truth = subject.as_contracted();
     context.cases::<Sound>(id, &truth, |case| {
-        let case = &Case { proposals: Proposals::Policy, ..case.clone() };
+        let case = &Case {
+            proposals: Proposals::Policy,
+            ..case.clone()
+        };
         let junction = junction(case, subject)?;
         let entered = flown(subject.policy, subject.contract, &junction);
         let mut approach = entered.map_err(Miss::skip)?;
@@ -107,10 +120,19 @@ pub(super) fn repeated_call<R: Rules + Clone>(context: &Context<'_>, id: &'stati
     twins::<R>(context, id, |twin, call| {
         let decision = twin.decide(call.seen, call.proposal);
         same(call, call.decision, &decision)?;
-        let nobody = Seen { tracks: Vec::new(), ..call.seen.clone() };
+        let nobody = Seen {
+            tracks: Vec::new(),
+            ..call.seen.clone()
+        };
         identical(call, &decision, &twin.decide(&nobody, Some(-1.0)))?;
         let before = Instant::from_micros(call.seen.now.micros() - 1);
-        let earlier = twin.decide(&Seen { now: before, ..nobody }, None);
+        let earlier = twin.decide(
+            &Seen {
+                now: before,
+                ..nobody
+            },
+            None,
+        );
         let mut expected = decision;
         expected.fault = Some(Fault::Backwards);
         identical(call, &expected, &earlier)
@@ -146,8 +168,19 @@ pub(super) fn bystanders<R: Rules + Clone>(context: &Context<'_>, id: &'static s
     unmoved::<R>(context, id, |seen, _, step| {
         let mut seen = seen.clone();
         let away = |number: u16, s: f32| {
-            let pose = Pose { position: Point::new(s - 200.0, 900.0), direction: unit(1.0, 0.0) };
-            Track::on(number, Road::Away.path(), Vehicle { s, speed: 10.0, pose })
+            let pose = Pose {
+                position: Point::new(s - 200.0, 900.0),
+                direction: unit(1.0, 0.0),
+            };
+            Track::on(
+                number,
+                Road::Away.path(),
+                Vehicle {
+                    s,
+                    speed: 10.0,
+                    pose,
+                },
+            )
         };
         seen.tracks.insert(0, away(2000, 50.0));
         let rest = (0..10).map(|i| away(3000 + (step as u16 % 50) * 10 + i, f32::from(i) * 30.0));

@@ -7,8 +7,11 @@ use std::fmt::Write;
 
 /// The report as XML.
 pub(super) fn write(report: &Report) -> String {
-    let (tests, failures, skipped) =
-        (report.outcomes.len(), report.failed().count(), report.skipped().count());
+    let (tests, failures, skipped) = (
+        report.outcomes.len(),
+        report.failed().count(),
+        report.skipped().count(),
+    );
     let time: f64 = report.outcomes.iter().map(|outcome| outcome.seconds).sum();
     let name = escaped(&report.subject);
     let cases: String = report.outcomes.iter().map(case).collect();
@@ -23,7 +26,12 @@ pub(super) fn write(report: &Report) -> String {
 }
 
 fn case(outcome: &Outcome) -> String {
-    let Outcome { id, sentence, seconds, .. } = outcome;
+    let Outcome {
+        id,
+        sentence,
+        seconds,
+        ..
+    } = outcome;
     let body = match &outcome.verdict {
         Verdict::Passed => String::new(),
         Verdict::Skipped(why) => format!("<skipped message=\"{}\"/>", escaped(why)),
@@ -31,7 +39,11 @@ fn case(outcome: &Outcome) -> String {
             let mend = failure.mend.as_deref().unwrap_or_default();
             let case = failure.case.as_deref().unwrap_or_default();
             let text = format!("{sentence}\n{}\n{mend}\n{case}", failure.message);
-            format!("<failure message=\"{}\">{}</failure>", escaped(&failure.message), escaped(&text))
+            format!(
+                "<failure message=\"{}\">{}</failure>",
+                escaped(&failure.message),
+                escaped(&text)
+            )
         }
     };
     let mut out = format!("<system-out>{}", escaped(sentence));
@@ -71,12 +83,27 @@ mod tests {
     fn a_reader_of_xml_reads_everything_back() {
         let xml = example().to_junit();
         let document = roxmltree::Document::parse(&xml).unwrap();
-        let named = |name| document.descendants().find(move |n| n.attribute("name") == Some(name));
-        let suite = document.descendants().find(|n| n.has_tag_name("testsuite")).unwrap();
-        assert_eq!((suite.attribute("tests"), suite.attribute("failures")), (Some("3"), Some("1")));
+        let named = |name| {
+            document
+                .descendants()
+                .find(move |n| n.attribute("name") == Some(name))
+        };
+        let suite = document
+            .descendants()
+            .find(|n| n.has_tag_name("testsuite"))
+            .unwrap();
+        assert_eq!(
+            (suite.attribute("tests"), suite.attribute("failures")),
+            (Some("3"), Some("1"))
+        );
         let failure = named("bad").unwrap().first_element_child().unwrap();
         assert_eq!(failure.attribute("message"), Some("a < b & \"c\"\u{FFFD}"));
-        assert!(failure.text().unwrap().ends_with("change ego.braking\nE ]]> 1\n'"));
+        assert!(
+            failure
+                .text()
+                .unwrap()
+                .ends_with("change ego.braking\nE ]]> 1\n'")
+        );
         let skipped = named("left-out").unwrap().first_element_child().unwrap();
         assert_eq!(skipped.attribute("message"), Some("no rule"));
     }

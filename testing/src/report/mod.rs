@@ -73,12 +73,16 @@ impl Report {
 
     /// The checks that failed.
     pub fn failed(&self) -> impl Iterator<Item = &Outcome> {
-        self.outcomes.iter().filter(|outcome| matches!(outcome.verdict, Verdict::Failed(_)))
+        self.outcomes
+            .iter()
+            .filter(|outcome| matches!(outcome.verdict, Verdict::Failed(_)))
     }
 
     /// The checks that could not be tried.
     pub fn skipped(&self) -> impl Iterator<Item = &Outcome> {
-        self.outcomes.iter().filter(|outcome| matches!(outcome.verdict, Verdict::Skipped(_)))
+        self.outcomes
+            .iter()
+            .filter(|outcome| matches!(outcome.verdict, Verdict::Skipped(_)))
     }
 
     /// The check named `id`.
@@ -171,7 +175,10 @@ mod tests {
     fn json_has_verdicts_and_numbers() {
         let json: serde_json::Value = serde_json::from_str(&example().to_json()).unwrap();
         assert_eq!(json["outcomes"][1]["verdict"]["is"], "failed");
-        assert_eq!(json["outcomes"][1]["verdict"]["details"]["mend"], "change ego.braking");
+        assert_eq!(
+            json["outcomes"][1]["verdict"]["details"]["mend"],
+            "change ego.braking"
+        );
         assert_eq!(json["outcomes"][0]["numbers"][0][1], 0.5);
     }
 }

@@ -5,8 +5,14 @@ use std::fmt::{Display, Formatter, Result};
 
 impl Display for Report {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        writeln!(f, "{}; seed {}, {} cases a check", self.subject, self.seed, self.cases)?;
-        self.outcomes.iter().try_for_each(|outcome| write!(f, "{outcome}"))?;
+        writeln!(
+            f,
+            "{}; seed {}, {} cases a check",
+            self.subject, self.seed, self.cases
+        )?;
+        self.outcomes
+            .iter()
+            .try_for_each(|outcome| write!(f, "{outcome}"))?;
         let (failed, skipped) = (self.failed().count(), self.skipped().count());
         let passed = self.outcomes.len() - failed - skipped;
         write!(f, "{passed} passed, {failed} failed, {skipped} SKIPPED")?;
@@ -19,7 +25,15 @@ impl Display for Report {
 
 impl Display for Outcome {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        let Self { id, sentence, verdict, cases, skipped_cases, numbers, seconds } = self;
+        let Self {
+            id,
+            sentence,
+            verdict,
+            cases,
+            skipped_cases,
+            numbers,
+            seconds,
+        } = self;
         let word = match verdict {
             Verdict::Passed => "ok",
             Verdict::Failed(_) => "FAILED",
@@ -42,7 +56,8 @@ impl Display for Outcome {
                     writeln!(f, "        To mend it: {mend}.")?;
                 }
                 let case = failure.case.as_deref().unwrap_or_default();
-                case.lines().try_for_each(|line| writeln!(f, "        {line}"))
+                case.lines()
+                    .try_for_each(|line| writeln!(f, "        {line}"))
             }
         }
     }
@@ -55,6 +70,9 @@ mod tests {
         let text = super::super::example().to_string();
         assert!(text.contains("FAILED  bad: "), "{text}");
         assert!(text.contains("To mend it: change ego.braking."), "{text}");
-        assert!(text.ends_with("1 passed, 1 failed, 1 SKIPPED\nNOT CHECKED: left-out"), "{text}");
+        assert!(
+            text.ends_with("1 passed, 1 failed, 1 SKIPPED\nNOT CHECKED: left-out"),
+            "{text}"
+        );
     }
 }

@@ -10,14 +10,29 @@ use proptest::prelude::*;
 ///
 /// Some of them do not start within the contract: vehicles overlap, or no plan is safe at the start.
 pub fn case(contract: &Contract) -> impl Strategy<Value = Case> + use<> {
+    of(contract, 3)
+}
+
+/// The same with one other.
+pub(crate) fn case_of_two(contract: &Contract) -> impl Strategy<Value = Case> + use<> {
+    of(contract, 1)
+}
+
+fn of(contract: &Contract, most: usize) -> impl Strategy<Value = Case> + use<> {
     let arm = arm(contract);
     let ego = contract.ego();
     let stop = ego.max_speed * ego.max_speed / (2.0 * ego.braking);
     let before = decimetres(stop + 20.0).min(arm * 10 - 150);
     let speeds = [ego.max_speed, contract.other().max_speed].map(decimetres);
-    let others = prop::collection::vec(other(arm, speeds[1]), 1..=3);
-    (place(arm), (rounded(before), rounded(speeds[0])), others, proposals(), noise()).prop_map(
-        |(place, (before, speed), mut others, proposals, noise)| {
+    let others = prop::collection::vec(other(arm, speeds[1]), 1..=most);
+    (
+        place(arm),
+        (rounded(before), rounded(speeds[0])),
+        others,
+        proposals(),
+        noise(),
+    )
+        .prop_map(|(place, (before, speed), mut others, proposals, noise)| {
             let merges = matches!(place.shape, Shape::Merging(_) | Shape::RightTurn);
             for other in &mut others {
                 // Lorries and bicycles of a merging road drive in the ego's lane as well: that is wanted.
@@ -25,9 +40,15 @@ pub fn case(contract: &Contract) -> impl Strategy<Value = Case> + use<> {
                     other.road = Road::First;
                 }
             }
-            Case { place, before, speed, others, proposals, noise }
-        },
-    )
+            Case {
+                place,
+                before,
+                speed,
+                others,
+                proposals,
+                noise,
+            }
+        })
 }
 
 fn other(arm: u16, most: u16) -> impl Strategy<Value = Other> {
@@ -86,6 +107,13 @@ pub fn noise() -> impl Strategy<Value = Noise> {
     let missing = prop_oneof![3 => Just(0_u8), 1 => 0_u8..32];
     let levels = (level(), level(), level(), level());
     (any::<u16>(), levels, missing).prop_map(|(seed, (errors, delay, jitter, beside), missing)| {
-        Noise { seed, errors, delay, jitter, beside, missing }
+        Noise {
+            seed,
+            errors,
+            delay,
+            jitter,
+            beside,
+            missing,
+        }
     })
 }

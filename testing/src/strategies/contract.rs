@@ -90,7 +90,11 @@ impl std::fmt::Display for Refused {
 }
 
 /// The fields, and how each is set.
-type Field = (&'static str, fn(ContractBuilder, f32) -> ContractBuilder, f32);
+type Field = (
+    &'static str,
+    fn(ContractBuilder, f32) -> ContractBuilder,
+    f32,
+);
 
 /// Every field of a contract with a value above which it is refused.
 const FIELDS: [Field; 17] = [
@@ -101,16 +105,32 @@ const FIELDS: [Field; 17] = [
     ("speed_error", ContractBuilder::speed_error, 10.0),
     ("slack", ContractBuilder::slack, 10.0),
     ("other.max_speed", ContractBuilder::other_max_speed, 100.0),
-    ("other.acceleration", ContractBuilder::other_acceleration, 20.0),
+    (
+        "other.acceleration",
+        ContractBuilder::other_acceleration,
+        20.0,
+    ),
     ("other.braking", ContractBuilder::other_braking, 20.0),
     ("ego.max_speed", ContractBuilder::ego_max_speed, 15.0),
     ("ego.acceleration", ContractBuilder::ego_acceleration, 3.0),
     ("ego.go", ContractBuilder::ego_go, 3.0),
     ("ego.braking", ContractBuilder::ego_braking, 8.0),
-    ("follower.reaction", ContractBuilder::follower_reaction, 10.0),
+    (
+        "follower.reaction",
+        ContractBuilder::follower_reaction,
+        10.0,
+    ),
     ("follower.braking", ContractBuilder::follower_braking, 8.0),
-    ("precedence.distance", |b, x| stop(b, |rule| rule.distance = x), 200.0),
-    ("precedence.braking", |b, x| stop(b, |rule| rule.braking = x), 20.0),
+    (
+        "precedence.distance",
+        |b, x| stop(b, |rule| rule.distance = x),
+        200.0,
+    ),
+    (
+        "precedence.braking",
+        |b, x| stop(b, |rule| rule.braking = x),
+        20.0,
+    ),
 ];
 
 fn stop(builder: ContractBuilder, change: impl Fn(&mut Precedence)) -> ContractBuilder {
@@ -122,8 +142,12 @@ fn stop(builder: ContractBuilder, change: impl Fn(&mut Precedence)) -> ContractB
 /// Each contract that is refused for one number: above its range, below it, or no number.
 pub fn refused_contract() -> impl Strategy<Value = Refused> {
     let wrong = prop_oneof![Just(0_u8), Just(1), Just(2), Just(3), Just(4)];
-    (prop::sample::select(FIELDS.to_vec()), wrong, 0.001_f32..1000.0).prop_map(
-        |((field, set, most), wrong, by)| {
+    (
+        prop::sample::select(FIELDS.to_vec()),
+        wrong,
+        0.001_f32..1000.0,
+    )
+        .prop_map(|((field, set, most), wrong, by)| {
             let value = match wrong {
                 0 => most + by,
                 1 => -by,
@@ -131,10 +155,16 @@ pub fn refused_contract() -> impl Strategy<Value = Refused> {
                 3 => f32::INFINITY,
                 _ => f32::NEG_INFINITY,
             };
+            // A follower's braking that is no number is named as ego.acceleration, whose range depends on it.
+            let odd = field == "follower.braking" && value.is_nan();
+            let value = if odd { -by } else { value };
             let builder = set(Contract::ALL_WAY_STOP.to_builder(), value);
-            Refused { builder, field, value }
-        },
-    )
+            Refused {
+                builder,
+                field,
+                value,
+            }
+        })
 }
 
 #[cfg(test)]

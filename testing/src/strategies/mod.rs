@@ -20,6 +20,7 @@ mod motion;
 mod observation;
 mod place;
 
+pub(crate) use case::case_of_two;
 pub use case::{case, noise};
 pub use contract::{Refused, contract, refused_contract};
 pub use motion::{script, script_outside};

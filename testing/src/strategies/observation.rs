@@ -42,7 +42,10 @@ impl AnyObservation {
     /// As the controller is told it.
     #[must_use]
     pub fn observation(&self) -> Observation<'_> {
-        Observation { ego: self.ego, tracks: &self.tracks }
+        Observation {
+            ego: self.ego,
+            tracks: &self.tracks,
+        }
     }
 }
 
@@ -60,7 +63,10 @@ fn wild() -> impl Strategy<Value = Vehicle> {
     prop::array::uniform6(number()).prop_map(|[s, speed, x, y, dx, dy]| Vehicle {
         s,
         speed,
-        pose: Pose { position: Point::new(x, y), direction: unit(dx, dy) },
+        pose: Pose {
+            position: Point::new(x, y),
+            direction: unit(dx, dy),
+        },
     })
 }
 
@@ -75,13 +81,19 @@ fn good(junction: Arc<TestJunction>, road: Road) -> impl Strategy<Value = Vehicl
 }
 
 fn no_pose() -> Pose {
-    Pose { position: Point::origin(), direction: unit(1.0, 0.0) }
+    Pose {
+        position: Point::origin(),
+        direction: unit(1.0, 0.0),
+    }
 }
 
 /// A good vehicle with one number replaced by anything.
 fn spoilt(junction: Arc<TestJunction>, road: Road) -> impl Strategy<Value = Vehicle> {
     (good(junction, road), 0_u8..6, number()).prop_map(|(mut vehicle, which, value)| {
-        let Pose { position, direction } = vehicle.pose;
+        let Pose {
+            position,
+            direction,
+        } = vehicle.pose;
         match which {
             0 => vehicle.s = value,
             1 => vehicle.speed = value,
@@ -149,7 +161,10 @@ pub fn calls() -> impl Strategy<Value = AnyCalls> {
         ];
         let proposal = prop_oneof![Just(None), number().prop_map(Some)];
         let call = (step, any::<u64>(), observed(&junction), proposal);
-        prop::collection::vec(call, 1..=6).prop_map(move |calls| AnyCalls { place, calls: timed(calls) })
+        prop::collection::vec(call, 1..=6).prop_map(move |calls| AnyCalls {
+            place,
+            calls: timed(calls),
+        })
     })
 }
 
@@ -158,7 +173,11 @@ fn timed(calls: Vec<(Option<u64>, u64, AnyObservation, Option<f32>)>) -> Vec<Any
     let mut now = 5_000_000_u64;
     let timed = calls.into_iter().map(|(step, anywhere, seen, proposal)| {
         now = step.map_or(anywhere, |step| now.saturating_add(step));
-        AnyCall { now: Instant::from_micros(now), seen, proposal }
+        AnyCall {
+            now: Instant::from_micros(now),
+            seen,
+            proposal,
+        }
     });
     timed.collect()
 }
@@ -170,7 +189,11 @@ impl fmt::Display for InWords<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Vehicle { s, speed, pose } = self.0;
         let (at, to) = (pose.position, pose.direction);
-        write!(f, "s {s} m, {speed} m/s, at ({}, {}), towards ({}, {})", at.x, at.y, to.x, to.y)
+        write!(
+            f,
+            "s {s} m, {speed} m/s, at ({}, {}), towards ({}, {})",
+            at.x, at.y, to.x, to.y
+        )
     }
 }
 
@@ -178,10 +201,20 @@ impl fmt::Display for AnyObservation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "ego: {}", InWords(&self.ego))?;
         for track in &self.tracks {
-            let Track { number, class, speed, pose, .. } = *track;
+            let Track {
+                number,
+                class,
+                speed,
+                pose,
+                ..
+            } = *track;
             write!(f, "\n  track {number}, {class:?}:")?;
             for candidate in track.candidates() {
-                let vehicle = Vehicle { s: candidate.s, speed, pose };
+                let vehicle = Vehicle {
+                    s: candidate.s,
+                    speed,
+                    pose,
+                };
                 write!(f, " on {}: {};", candidate.path, InWords(&vehicle))?;
             }
         }
@@ -192,7 +225,12 @@ impl fmt::Display for AnyObservation {
 impl fmt::Display for AnyCalls {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Place: {}.", self.place)?;
-        for AnyCall { now, seen, proposal } in &self.calls {
+        for AnyCall {
+            now,
+            seen,
+            proposal,
+        } in &self.calls
+        {
             write!(f, "\nAt {} µs, ", now.micros())?;
             match proposal {
                 Some(proposal) => write!(f, "{proposal} m/s² is proposed")?,

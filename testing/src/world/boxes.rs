@@ -20,7 +20,8 @@ impl Rectangle {
     fn corners(&self) -> [[f64; 2]; 4] {
         let ([x, y], [cos, sin]) = (self.place.at, self.place.towards);
         let [l, w] = self.half;
-        [(l, w), (l, -w), (-l, -w), (-l, w)].map(|(l, w)| [x + l * cos - w * sin, y + l * sin + w * cos])
+        [(l, w), (l, -w), (-l, -w), (-l, w)]
+            .map(|(l, w)| [x + l * cos - w * sin, y + l * sin + w * cos])
     }
 
     /// By how much (m) they overlap: the least distance by which one would have to be moved. 0 if they are apart.
@@ -30,17 +31,24 @@ impl Rectangle {
             [[x, y], [-y, x]]
         });
         let (own, others) = (self.corners(), other.corners());
-        axes.as_flattened().iter().fold(f64::INFINITY, |least, axis| {
-            let [a, b] = [&own, &others].map(|corners| extent(corners, *axis));
-            least.min((a[1] - b[0]).min(b[1] - a[0]))
-        }).max(0.0)
+        axes.as_flattened()
+            .iter()
+            .fold(f64::INFINITY, |least, axis| {
+                let [a, b] = [&own, &others].map(|corners| extent(corners, *axis));
+                least.min((a[1] - b[0]).min(b[1] - a[0]))
+            })
+            .max(0.0)
     }
 }
 
 /// The least and the largest coordinate along `axis`.
 fn extent(corners: &[[f64; 2]; 4], axis: [f64; 2]) -> [f64; 2] {
     let along = corners.map(|[x, y]| x * axis[0] + y * axis[1]);
-    along.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(*x), high.max(*x)])
+    along
+        .iter()
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+            [low.min(*x), high.max(*x)]
+        })
 }
 
 #[cfg(test)]
@@ -49,7 +57,13 @@ mod tests {
 
     fn at(x: f64, y: f64, degrees: f64) -> Rectangle {
         let (sin, cos) = degrees.to_radians().sin_cos();
-        Rectangle::new(Place { at: [x, y], towards: [cos, sin] }, Footprint::PAPER)
+        Rectangle::new(
+            Place {
+                at: [x, y],
+                towards: [cos, sin],
+            },
+            Footprint::PAPER,
+        )
     }
 
     #[test]

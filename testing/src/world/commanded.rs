@@ -16,7 +16,11 @@ pub(crate) struct Commanded {
 
 impl Commanded {
     pub(crate) fn new(state: State) -> Self {
-        Self { state, acceleration: 0.0, coming: VecDeque::new() }
+        Self {
+            state,
+            acceleration: 0.0,
+            coming: VecDeque::new(),
+        }
     }
 
     /// Gives `command` (m/s²), which takes effect `late` seconds from now, and not before those before it.
@@ -52,7 +56,10 @@ mod tests {
 
     #[test]
     fn commands_take_effect_in_their_order_and_within_what_is_achieved() {
-        let truth = Truth { braking: 2.0, ..Truth::as_contracted(&Contract::WORST_CASE) };
+        let truth = Truth {
+            braking: 2.0,
+            ..Truth::as_contracted(&Contract::WORST_CASE)
+        };
         let mut ego = Commanded::new(State { s: 0.0, v: 10.0 });
         ego.command(1.0, 0.1);
         ego.advance(&truth, 0.1);

@@ -71,14 +71,27 @@ mod tests {
     #[test]
     fn the_safe_gap_is_enough() {
         let contract = Contract::WORST_CASE;
-        let place = Place { shape: Shape::Following, arm: 80, tolerance: 0, right: Right::Nobody };
+        let place = Place {
+            shape: Shape::Following,
+            arm: 80,
+            tolerance: 0,
+            right: Right::Nobody,
+        };
         let junction = place.junction(Footprint::PAPER).unwrap();
-        let conflict = junction.conflict(Road::Own.path(), Road::First.path()).unwrap();
+        let conflict = junction
+            .conflict(Road::Own.path(), Road::First.path())
+            .unwrap();
         let zone = conflict.zones().next().unwrap();
         for (ego_speed, speed) in [(0.0, 10.0), (10.0, 15.0), (14.0, 3.0)] {
             let needs = safe_gap(&contract, ego_speed, speed) + 0.05 * speed;
-            let mut ego = State { s: 100.0, v: ego_speed };
-            let mut other = State { s: 100.0 - needs - f64::from(zone.lead.to), v: speed };
+            let mut ego = State {
+                s: 100.0,
+                v: ego_speed,
+            };
+            let mut other = State {
+                s: 100.0 - needs - f64::from(zone.lead.to),
+                v: speed,
+            };
             let mut follower = Follower::default();
             for _ in 0..2000 {
                 let pair = (ego, other);

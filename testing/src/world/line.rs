@@ -42,7 +42,10 @@ impl Line {
         let [cos, sin] = [(u - x) / length, (v - y) / length];
         let along = s - self.arc[i - 1];
         Place {
-            at: [x + along * cos - beside * sin, y + along * sin + beside * cos],
+            at: [
+                x + along * cos - beside * sin,
+                y + along * sin + beside * cos,
+            ],
             towards: [cos, sin],
         }
     }

@@ -12,7 +12,9 @@ use crate::place::{Road, TestJunction};
 use crate::vehicle::Truth;
 use boxes::Rectangle;
 use cede_controller::geometry::unit;
-use cede_controller::{Contract, Footprint, Instant, Observation, Point, Pose, Track, Vehicle, Zone};
+use cede_controller::{
+    Contract, Footprint, Instant, Observation, Point, Pose, Track, Vehicle, Zone,
+};
 use commanded::Commanded;
 use line::Line;
 use motion::State;
@@ -39,7 +41,10 @@ pub(crate) struct Seen {
 
 impl Seen {
     pub(crate) fn observation(&self) -> Observation<'_> {
-        Observation { ego: self.ego, tracks: &self.tracks }
+        Observation {
+            ego: self.ego,
+            tracks: &self.tracks,
+        }
     }
 }
 
@@ -84,11 +89,17 @@ impl<'j> World<'j> {
     ) -> Result<Self, String> {
         let lines = Road::ALL.map(|road| junction.polyline(road.path()).map(Line::new));
         let lines: Vec<Line> = lines.into_iter().flatten().collect();
-        let line = junction.path(Road::Own.path()).map_or(0.0, |path| f64::from(path.line()));
+        let line = junction
+            .path(Road::Own.path())
+            .map_or(0.0, |path| f64::from(path.line()));
         let s = line - f64::from(case.before) / 10.0;
-        let ego = Commanded::new(State { s, v: f64::from(case.speed) / 10.0 });
+        let ego = Commanded::new(State {
+            s,
+            v: f64::from(case.speed) / 10.0,
+        });
         let others = case.others.iter().enumerate();
-        let others = others.map(|(i, other)| Driven::new(i, other, ego.state, (contract, junction)));
+        let others =
+            others.map(|(i, other)| Driven::new(i, other, ego.state, (contract, junction)));
         let world = Self {
             case,
             contract: *contract,
@@ -123,7 +134,8 @@ impl<'j> World<'j> {
             let (ego, state) = (self.ego.state, other.state);
             let needs = follower::safe_gap(&self.contract, ego.v, state.v);
             let short = |zone: &Zone| {
-                follower::is_ahead(zone, ego.s, state.s) && follower::gap(zone, ego.s, state.s) < needs + 0.05 * state.v
+                follower::is_ahead(zone, ego.s, state.s)
+                    && follower::gap(zone, ego.s, state.s) < needs + 0.05 * state.v
             };
             if self.zones(other.road).any(short) {
                 return Err("another would start too near behind the ego".to_owned());
@@ -197,7 +209,8 @@ impl<'j> World<'j> {
     /// How far (m) vehicle number `channel` is beside its road.
     fn beside(&self, channel: u16) -> f64 {
         let noise = &self.case.noise;
-        f64::from(self.junction.tolerance()) * noise.share(noise.beside, 0, 1000 + u32::from(channel))
+        f64::from(self.junction.tolerance())
+            * noise.share(noise.beside, 0, 1000 + u32::from(channel))
     }
 
     /// Everybody moves on until the next call, after `command` (m/s²) was given.
@@ -224,8 +237,17 @@ impl<'j> World<'j> {
         let me = self.others.get(i).filter(|other| other.is_shielded())?;
         let ego = self.sensed(Road::Own, self.ego.state, 500);
         let mut tracks = vec![Track::on(1000, Road::Own.path(), ego)];
-        tracks.extend(self.others.iter().filter(|other| other.number != me.number).map(|other| self.track(other)));
-        Some(Seen { now, ego: self.sensed(me.road, me.state, me.number + 300), tracks })
+        tracks.extend(
+            self.others
+                .iter()
+                .filter(|other| other.number != me.number)
+                .map(|other| self.track(other)),
+        );
+        Some(Seen {
+            now,
+            ego: self.sensed(me.road, me.state, me.number + 300),
+            tracks,
+        })
     }
 
     fn advance(&mut self, time: f64) {
@@ -263,14 +285,19 @@ impl<'j> World<'j> {
     fn is_over(&self) -> bool {
         let near = |road: Road, s: f64| s > self.lines[road as usize].length() - 5.0;
         near(Road::Own, self.ego.state.s)
-            || self.others.iter().any(|other| !other.gone && near(other.road, other.state.s))
+            || self
+                .others
+                .iter()
+                .any(|other| !other.gone && near(other.road, other.state.s))
     }
 
     /// Whether the ego has passed every zone that ends.
     pub(crate) fn is_through(&self) -> bool {
         let s = self.ego.state.s;
         let mut zones = Road::ALL.into_iter().flat_map(|road| self.zones(road));
-        zones.all(|zone| s >= f64::from(zone.ego.to) || (zone.is_lane() && s >= f64::from(zone.ego.from) + 1.0))
+        zones.all(|zone| {
+            s >= f64::from(zone.ego.to) || (zone.is_lane() && s >= f64::from(zone.ego.from) + 1.0)
+        })
     }
 
     /// Seconds since the first call.

@@ -35,7 +35,9 @@ impl<'j> Driven<'j> {
     ) -> Result<Self, String> {
         let conflict = junction.conflict(Road::Own.path(), other.road.path());
         let zones = conflict.into_iter().flat_map(|conflict| conflict.zones());
-        let first = zones.map(|zone| zone.other.from).fold(f32::INFINITY, f32::min);
+        let first = zones
+            .map(|zone| zone.other.from)
+            .fold(f32::INFINITY, f32::min);
         let before = f64::from(other.before) / 10.0;
         let s = match f64::from(first) {
             // In the ego's lane from the start.
@@ -44,11 +46,17 @@ impl<'j> Driven<'j> {
             // No zone.
             _ => 100.0 - before,
         };
-        let state = State { s, v: f64::from(other.speed) / 10.0 };
+        let state = State {
+            s,
+            v: f64::from(other.speed) / 10.0,
+        };
         let shield = match contract.precedence() {
             Some(_) => {
                 let entered = Shield::enter(*contract, junction, other.road.path());
-                Some((entered.map_err(|error| error.to_string())?, Commanded::new(state)))
+                Some((
+                    entered.map_err(|error| error.to_string())?,
+                    Commanded::new(state),
+                ))
             }
             None => None,
         };
@@ -75,10 +83,20 @@ impl<'j> Driven<'j> {
 
     /// Decides for the next period, number `step`; a command of its shield takes effect after the share `late` of
     /// the latency.
-    pub(crate) fn decide(&mut self, contract: &Contract, view: Option<Seen>, (step, late): (u32, f64)) {
+    pub(crate) fn decide(
+        &mut self,
+        contract: &Contract,
+        view: Option<Seen>,
+        (step, late): (u32, f64),
+    ) {
         let share = f64::from(quarters(&self.script, step).unwrap_or(0)) / 4.0;
         let limits = contract.other();
-        let wanted = share * f64::from(if share < 0.0 { limits.braking } else { limits.acceleration });
+        let wanted = share
+            * f64::from(if share < 0.0 {
+                limits.braking
+            } else {
+                limits.acceleration
+            });
         match (&mut self.shield, view) {
             (Some((shield, body)), Some(seen)) => {
                 let decision = shield.filter(seen.now, &seen.observation(), wanted as f32);
@@ -104,7 +122,9 @@ impl<'j> Driven<'j> {
         }
         let cap = f64::from(contract.other().max_speed);
         let wanted = (self.wanted, time);
-        let acceleration = self.follower.keep_distance(contract, zones, (ego, self.state), wanted);
+        let acceleration = self
+            .follower
+            .keep_distance(contract, zones, (ego, self.state), wanted);
         self.state = self.state.after(acceleration, time, cap);
     }
 

@@ -85,25 +85,39 @@ impl Input {
     pub(crate) fn read(arguments: &Arguments) -> Result<Self, String> {
         let (words, policy) = match &arguments.policy {
             Some(path) => (policy(path)?, path.display().to_string()),
-            None => (embedded::words().to_vec(), "the policy that ships".to_owned()),
+            None => (
+                embedded::words().to_vec(),
+                "the policy that ships".to_owned(),
+            ),
         };
         let (contract, from) = match &arguments.contract {
             Some(path) => (contract(path)?, path.display().to_string()),
             None => (Contract::WORST_CASE, "the worst case".to_owned()),
         };
         if !(0.0..=1.0).contains(&arguments.most_shielded) {
-            return Err(format!("--most-shielded: {} is outside [0, 1]", arguments.most_shielded));
+            return Err(format!(
+                "--most-shielded: {} is outside [0, 1]",
+                arguments.most_shielded
+            ));
         }
         let known = cede_testing::checks();
-        let unknown = arguments.only.iter().find(|only| known.iter().all(|(id, _)| id != only));
+        let unknown = arguments
+            .only
+            .iter()
+            .find(|only| known.iter().all(|(id, _)| id != only));
         if let Some(unknown) = unknown {
-            return Err(format!("--only: there is no check `{unknown}`; --list names them"));
+            return Err(format!(
+                "--only: there is no check `{unknown}`; --list names them"
+            ));
         }
         Ok(Self {
             words,
             contract,
             vehicle: numbers::vehicle(&arguments.vehicle)?,
-            said: format!("Policy: {policy}. Contract: {from}. Vehicle: {}.", arguments.vehicle),
+            said: format!(
+                "Policy: {policy}. Contract: {from}. Vehicle: {}.",
+                arguments.vehicle
+            ),
         })
     }
 
@@ -123,7 +137,10 @@ impl Input {
             .cases(arguments.cases)
             .seed(arguments.seed)
             .most_shielded(arguments.most_shielded);
-        Ok(arguments.only.iter().fold(suite, |suite, id| suite.only(id)))
+        Ok(arguments
+            .only
+            .iter()
+            .fold(suite, |suite, id| suite.only(id)))
     }
 }
 

@@ -9,7 +9,11 @@ use cede_testing::Vehicle;
 /// A sentence with the key and its value.
 pub(crate) fn vehicle(text: &str) -> Result<Vehicle, String> {
     let mut vehicle = Vehicle::new(Footprint::PAPER);
-    for pair in text.split(',').map(str::trim).filter(|pair| !pair.is_empty()) {
+    for pair in text
+        .split(',')
+        .map(str::trim)
+        .filter(|pair| !pair.is_empty())
+    {
         let (key, value) = pair
             .split_once('=')
             .ok_or_else(|| format!("--vehicle: `{pair}` is not KEY=VALUE"))?;
@@ -19,7 +23,9 @@ pub(crate) fn vehicle(text: &str) -> Result<Vehicle, String> {
             .map_err(|_| format!("--vehicle: {key} = `{value}` is not a number"))?;
         vehicle = set(vehicle, key.trim(), number)?;
     }
-    vehicle.check().map_err(|error| format!("--vehicle: {error}"))?;
+    vehicle
+        .check()
+        .map_err(|error| format!("--vehicle: {error}"))?;
     Ok(vehicle)
 }
 
