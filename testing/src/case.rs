@@ -148,24 +148,29 @@ impl fmt::Display for Case {
             self.proposals
         )?;
         for (number, other) in (1..).zip(&self.others) {
-            writeln!(f, "Other {number}: {other}.")?;
+            let from = if self.place.begins_in_one_lane(other.road) {
+                "ahead of the ego"
+            } else {
+                "before its zone"
+            };
+            writeln!(f, "Other {number}: {}.", Told(other, from))?;
         }
         write!(f, "{}", self.noise)
     }
 }
 
-impl fmt::Display for Other {
+/// Another vehicle in words, and where its place is counted from.
+struct Told<'a>(&'a Other, &'static str);
+
+impl fmt::Display for Told<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (before, speed) = (tenths(self.before.into()), tenths(self.speed.into()));
-        let where_ = match self.road {
-            Road::Own => "ahead of the ego",
-            _ => "before its zone",
-        };
-        write!(f, "{}, {before} m {where_} at {speed} m/s", self.road)?;
-        if self.script.is_empty() {
+        let Self(other, from) = self;
+        let (before, speed) = (tenths(other.before.into()), tenths(other.speed.into()));
+        write!(f, "{}, {before} m {from} at {speed} m/s", other.road)?;
+        if other.script.is_empty() {
             return f.write_str(", keeps its speed");
         }
-        write!(f, "; {}", Script(&self.script))
+        write!(f, "; {}", Script(&other.script))
     }
 }
 

@@ -154,6 +154,16 @@ impl Place {
         builder.build()
     }
 
+    /// Whether a vehicle on `road` is in the ego's lane from the start.
+    #[must_use]
+    pub const fn begins_in_one_lane(&self, road: Road) -> bool {
+        match self.shape {
+            Shape::Following => matches!(road, Road::Own | Road::First | Road::FirstLorry),
+            Shape::LeftTurn => matches!(road, Road::Own | Road::Second | Road::SecondBicycle),
+            _ => matches!(road, Road::Own),
+        }
+    }
+
     /// Who goes before whom: one order of all roads.
     fn rights(&self) -> Vec<(Road, Road)> {
         let mut order = Road::ALL.to_vec();

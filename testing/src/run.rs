@@ -20,10 +20,12 @@ pub(crate) enum Miss {
 }
 
 impl Miss {
+    #[expect(clippy::needless_pass_by_value, reason = "to be handed to `map_err`")]
     pub(crate) fn skip(why: impl ToString) -> Self {
         Self::Skip(why.to_string())
     }
 
+    #[expect(clippy::needless_pass_by_value, reason = "to be handed to `map_err`")]
     pub(crate) fn broken(what: impl ToString) -> Self {
         Self::Broken(what.to_string())
     }
