@@ -1,6 +1,6 @@
-//! The golden file: scenes, what is observed in them, and what the host decides, as 32-bit words.
+//! The golden file: junctions, what is observed in them, and what the host decides, as 32-bit words.
 //!
-//! Scene after scene: the number of others and of steps, a route for each vehicle with the ego's first
+//! Junction after junction: the number of others and of steps, a route for each vehicle with the ego's first
 //! ([`ROUTE`] words each), then for each step the observation ([`QUESTION`] words) and the decision
 //! ([`ANSWER`] words). Host and image read it by this code. Numbers are bit patterns, so that what is
 //! no number is asked about as well.
@@ -13,23 +13,29 @@ pub use answer::{ANSWER, answer};
 
 use cede_controller::geometry::unit;
 use cede_controller::{
-    Contract, Controller, Footprint, Observation, Part, Path, Point, Policy, Pose, RightOfWay,
-    Route, RouteError, Scene, SceneError, Vehicle,
+    Class, Contract, Drive, Footprint, Instant, Junction, Observation, Part, PathId, Point, Policy,
+    Pose, Route, RouteError, Track, Vehicle,
 };
 
-/// Others in a scene, at most.
+/// Others in a junction, at most.
 pub const OTHERS: usize = 8;
 /// Points of a route, at most.
 pub const POINTS: usize = 8;
 /// Words of a route: length and width of its vehicle, who goes first (0 unsettled, 1 the ego, 2 the
 /// other), the number of points, and the points.
 pub const ROUTE: usize = 4 + 2 * POINTS;
-/// Words of a vehicle: whether it is there, s, speed, x, y, and the direction's x and y.
+/// Words of a vehicle: 1 and its track number, or 0 if it is not there; s, speed, x, y, and the direction's x and y.
 pub const VEHICLE: usize = 7;
-/// Words of an observation: the ego and the others.
-pub const QUESTION: usize = VEHICLE * (1 + OTHERS);
+/// Words of an observation: when it is made, in ms; the ego and the others.
+pub const QUESTION: usize = 1 + VEHICLE * (1 + OTHERS);
 
-/// A scene of the golden file.
+/// A path for each vehicle; the ego's, which comes first, can be entered.
+pub type Site = Junction<{ OTHERS + 1 }, { POINTS * (OTHERS + 1) }, 1>;
+
+/// The ego's path.
+pub const EGO: PathId = PathId::new(0);
+
+/// A junction of the golden file.
 #[derive(Clone, Copy, Debug)]
 pub struct Golden<'a> {
     routes: &'a [[u32; ROUTE]],
@@ -38,7 +44,7 @@ pub struct Golden<'a> {
 }
 
 impl<'a> Golden<'a> {
-    /// Takes a scene from the front of `words`; `None` at their end.
+    /// Takes a junction from the front of `words`; `None` at their end.
     pub fn next(words: &mut &'a [u32]) -> Option<Self> {
         let (&[others, steps], rest) = words.split_first_chunk()?;
         let (routes, rest) = rest.split_at_checked((usize::try_from(others).ok()? + 1) * ROUTE)?;
@@ -51,47 +57,27 @@ impl<'a> Golden<'a> {
         })
     }
 
-    /// The scene, with nobody's right of way: see [`Golden::settle`]. It is the result of one call, so that
-    /// it is made where it is to be and needs its room once.
-    ///
-    /// # Errors
-    /// If the routes make none.
-    pub fn scene(&self) -> Result<Scene<OTHERS>, SceneError> {
-        let Some((mine, theirs)) = self.routes.split_first() else {
-            return Err(SceneError::Others);
-        };
-        let Ok(route) = &route(mine) else {
-            return Err(SceneError::Others);
-        };
-        let footprint = footprint(mine);
-        let ego = Path { route, footprint };
-        let others = theirs.iter().map_while(other);
-        Scene::gather(ego, others)
-    }
-
-    /// Says in `scene` who goes first.
-    pub fn settle(&self, scene: &mut Scene<OTHERS>) {
-        for (i, [_, _, right_of_way, ..]) in self.routes.iter().skip(1).enumerate() {
-            let right_of_way = match right_of_way {
-                1 => RightOfWay::Ego,
-                2 => RightOfWay::Other,
-                _ => RightOfWay::Unsettled,
-            };
-            scene.set_right_of_way(i, right_of_way);
+    /// The junction; `None` if the routes make none.
+    #[must_use]
+    pub fn site(&self) -> Option<Site> {
+        let mut builder = Site::builder();
+        for words in self.routes {
+            let path = builder.path(&route(words).ok()?, Class::Car, footprint(words));
+            let path = path.ok()?;
+            match words[2] {
+                1 => builder.right_of_way(EGO, path).ok()?,
+                2 => builder.right_of_way(path, EGO).ok()?,
+                _ => {}
+            }
         }
+        builder.build().ok()
     }
 }
 
-/// The controller that is asked: within the worst-case contract, as the left-turner.
+/// What is asked: within the worst-case contract, as the left-turner.
 #[must_use]
-#[inline(never)]
-pub fn controller<'w>(policy: &Policy<'w>) -> Controller<'w, OTHERS> {
-    Controller::new(*policy, Contract::WORST_CASE, Part::Left)
-}
-
-fn other(words: &[u32; ROUTE]) -> Option<(Route<POINTS>, Footprint)> {
-    let route = route(words).ok()?;
-    Some((route, footprint(words)))
+pub const fn drive<'w>(policy: &Policy<'w>) -> Drive<'w> {
+    Drive::new(*policy, Contract::WORST_CASE, Part::Left)
 }
 
 #[inline(never)]
@@ -109,20 +95,49 @@ fn footprint([length, width, ..]: &[u32; ROUTE]) -> Footprint {
     }
 }
 
-/// What the words of a step observe. Not inlined: it would take its room twice.
-#[must_use]
-#[inline(never)]
-pub fn observation(words: &[u32; QUESTION]) -> Observation<OTHERS> {
-    let nobody = [0; VEHICLE];
-    let (ego, others) = words.as_chunks().0.split_first().unwrap_or((&nobody, &[]));
-    let mut observation = Observation {
-        ego: vehicle(ego),
-        others: [None; OTHERS],
-    };
-    for (place, words) in observation.others.iter_mut().zip(others) {
-        *place = (words[0] != 0).then(|| vehicle(words));
+/// What the words of a step observe.
+#[derive(Clone, Debug)]
+pub struct Seen {
+    /// When.
+    pub now: Instant,
+    ego: Vehicle,
+    tracks: [Track; OTHERS],
+    /// As many are there.
+    count: usize,
+}
+
+impl Seen {
+    /// Reads the words of a step. Not inlined: it would take its room twice.
+    #[must_use]
+    #[inline(never)]
+    pub fn read([now, vehicles @ ..]: &[u32; QUESTION]) -> Self {
+        let nobody = [0; VEHICLE];
+        let vehicles = vehicles.as_chunks().0;
+        let (ego, others) = vehicles.split_first().unwrap_or((&nobody, &[]));
+        let mut seen = Self {
+            now: Instant::from_millis((*now).into()),
+            ego: vehicle(ego),
+            tracks: [Track::on(0, EGO, vehicle(&nobody)); OTHERS],
+            count: 0,
+        };
+        for (path, words) in (1..).map(PathId::new).zip(others) {
+            let number = words[0].checked_sub(1);
+            if let (Some(number), Some(place)) = (number, seen.tracks.get_mut(seen.count)) {
+                *place = Track::on(number as u16, path, vehicle(words));
+                seen.count += 1;
+            }
+        }
+        seen
     }
-    observation
+
+    /// The observation.
+    #[must_use]
+    pub fn observation(&self) -> Observation<'_> {
+        Observation {
+            ego: self.ego,
+            tracks: self.tracks.get(..self.count).unwrap_or(&[]),
+        }
+    }
 }
 
 fn vehicle(words: &[u32; VEHICLE]) -> Vehicle {

@@ -1,20 +1,21 @@
 //! Writes the golden file: `cede-golden FOLDER`. The embedded policy drives.
 //!
 //! Everything else comes from one fixed generator: vehicles that start at random and drive as they please,
-//! within the contract for most of the time; now and then one vanishes, jumps, or is no number at all.
+//! within the contract for most of the time; now and then one vanishes, jumps, or is no number at all, and a call is
+//! late or repeated.
 
 mod random;
 mod traffic;
 
 use cede_controller::Policy;
-use cede_golden::{Golden, answer, controller, observation};
+use cede_golden::{EGO, Golden, Seen, answer, drive};
 use random::Random;
 use std::io::{Error, Result};
 use std::path::Path;
 use traffic::Traffic;
 
-/// Scenes, with 1 to 8 others in turn, and their steps of 0.1 s.
-const SCENES: usize = 24;
+/// Junctions, with 1 to 8 others in turn, and their steps of 0.1 s.
+const SITES: usize = 24;
 const STEPS: usize = 60;
 
 fn main() -> Result<()> {
@@ -23,8 +24,8 @@ fn main() -> Result<()> {
     let mut random = Random::new(1);
     let policy = Policy::new(cede_controller::policy::embedded::words()).map_err(Error::other)?;
     let mut golden = Vec::new();
-    for i in 0..SCENES {
-        golden.extend(scene(&policy, &mut random, 1 + i % 8)?);
+    for i in 0..SITES {
+        golden.extend(site(&policy, &mut random, 1 + i % 8)?);
     }
     write(&Path::new(&folder).join("golden.bin"), &golden)
 }
@@ -34,20 +35,21 @@ fn write(path: &Path, words: &[u32]) -> Result<()> {
     std::fs::write(path, bytes)
 }
 
-/// A scene with `others` others, and what `policy` decides in it.
-fn scene(policy: &Policy<'_>, random: &mut Random, others: usize) -> Result<Vec<u32>> {
+/// A junction with `others` others, and what `policy` decides in it.
+fn site(policy: &Policy<'_>, random: &mut Random, others: usize) -> Result<Vec<u32>> {
+    let none = || Error::other("routes that are no junction");
     let mut traffic = Traffic::new(random, others);
     let mut words = vec![others as u32, 0];
     words.extend(traffic.routes());
-    let golden = Golden::next(&mut words.as_slice());
-    let golden = golden.ok_or_else(|| Error::other("no scene at the end"))?;
-    let mut scene = golden.scene().map_err(Error::other)?;
-    golden.settle(&mut scene);
-    let mut controller = controller(policy);
+    let golden = Golden::next(&mut words.as_slice()).ok_or_else(none)?;
+    let site = golden.site().ok_or_else(none)?;
+    let approach = drive(policy).enter(&site, EGO);
+    let mut approach = approach.map_err(Error::other)?;
     words[1] = STEPS as u32;
     for _ in 0..STEPS {
         let question = traffic.observe(random);
-        let decision = controller.decide(&scene, &observation(&question));
+        let seen = Seen::read(&question);
+        let decision = approach.decide(seen.now, &seen.observation());
         words.extend(question);
         words.extend(answer(&decision));
         traffic.advance(random, decision.acceleration);

@@ -10,12 +10,18 @@ const ACCELERATION: f32 = Contract::WORST_CASE.other().acceleration;
 const SPEED: f32 = Contract::WORST_CASE.other().max_speed;
 
 /// The ego and the others.
-pub(crate) struct Traffic(Vec<Vehicle>);
+pub(crate) struct Traffic {
+    vehicles: Vec<Vehicle>,
+    /// When they are seen, in ms.
+    now: u32,
+}
 
 struct Vehicle {
     points: Vec<Point>,
     route: Route<POINTS>,
     right_of_way: u32,
+    /// Of its track.
+    number: u32,
     there: bool,
     s: f32,
     speed: f32,
@@ -24,22 +30,23 @@ struct Vehicle {
 
 impl Traffic {
     pub(crate) fn new(random: &mut Random, others: usize) -> Self {
-        Self((0..=others).map(|_| Vehicle::new(random)).collect())
+        Self {
+            vehicles: (0..=others).map(|_| Vehicle::new(random)).collect(),
+            now: random.word() % 10_000,
+        }
     }
 
     pub(crate) fn routes(&self) -> impl Iterator<Item = u32> + '_ {
-        self.0.iter().flat_map(Vehicle::words)
+        self.vehicles.iter().flat_map(Vehicle::words)
     }
 
     /// What is seen; now and then something that cannot be.
     pub(crate) fn observe(&self, random: &mut Random) -> [u32; QUESTION] {
         let mut question = [0; QUESTION];
-        for (words, vehicle) in question
-            .as_chunks_mut::<VEHICLE>()
-            .0
-            .iter_mut()
-            .zip(&self.0)
-        {
+        let (now, vehicles) = question.split_at_mut(1);
+        now[0] = self.now;
+        let places = vehicles.as_chunks_mut::<VEHICLE>().0.iter_mut();
+        for (words, vehicle) in places.zip(&self.vehicles) {
             *words = vehicle.seen();
             if random.once_in(100) {
                 let place = 1 + random.word() as usize % (VEHICLE - 1);
@@ -51,7 +58,13 @@ impl Traffic {
 
     /// The ego does as it is told, the others as they please.
     pub(crate) fn advance(&mut self, random: &mut Random, acceleration: f32) {
-        for (i, vehicle) in self.0.iter_mut().enumerate() {
+        self.now += match random.word() % 40 {
+            0 => 0,
+            1 => 130,
+            2 => 300,
+            _ => 100,
+        };
+        for (i, vehicle) in self.vehicles.iter_mut().enumerate() {
             if i == 0 {
                 vehicle.acceleration = acceleration;
             } else {
@@ -65,11 +78,10 @@ impl Traffic {
 impl Vehicle {
     /// In from one side, a bend in the middle, out to another.
     fn new(random: &mut Random) -> Self {
-        let mut arm = |radius: f32| {
-            let angle = random.within(std::f32::consts::PI);
-            Point::new(radius * angle.cos(), radius * angle.sin())
-        };
-        let (from, to) = (arm(45.0), arm(45.0));
+        let side = random.within(std::f32::consts::PI);
+        let turn = random.within(1.3);
+        let arm = |angle: f32| Point::new(60.0 * angle.cos(), 60.0 * angle.sin());
+        let (from, to) = (arm(side), arm(side + std::f32::consts::PI + turn));
         let (entry, exit) = (from * 0.15, to * 0.15);
         let points = vec![
             from,
@@ -83,6 +95,7 @@ impl Vehicle {
             points,
             route,
             right_of_way: random.word() % 3,
+            number: random.word() % 65_536,
             there: !random.once_in(6),
             s: 20.0 + random.within(20.0),
             speed: 5.0 + random.within(5.0),
@@ -112,7 +125,9 @@ impl Vehicle {
             pose.direction.x,
             pose.direction.y,
         ];
-        let mut words = [u32::from(self.there); VEHICLE];
+        // One that has left its path is there no more.
+        let there = self.there && self.s <= self.route.length();
+        let mut words = [if there { 1 + self.number } else { 0 }; VEHICLE];
         for (place, number) in words[1..].iter_mut().zip(numbers) {
             *place = number.to_bits();
         }
