@@ -9,6 +9,8 @@ mod polyline;
 mod prepared;
 pub(crate) mod route;
 pub(crate) mod scene;
+#[cfg(test)]
+mod tests;
 mod way;
 pub mod zone;
 
