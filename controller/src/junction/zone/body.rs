@@ -93,15 +93,18 @@ impl<'a> Body<'a> {
         self.footprint.length + 2.0 * self.inflation
     }
 
-    /// The motion along piece `i`.
-    pub(super) fn straight(&self, i: usize) -> Option<Motion> {
+    /// What moves on piece `i`, and at the point before it.
+    // Not inlined: it is long, and it is called from two places.
+    #[inline(never)]
+    pub(super) fn stage(&self, i: usize) -> Option<Stage> {
         let piece = self.polyline.piece(i)?;
-        let sweep = |bend: Option<Bend>| match bend {
+        let (before, after) = (self.bend(i), self.bend(i + 1));
+        let small = |bend: &Option<Bend>| match bend {
             Some(bend) if bend.sweep <= SMALL_SWEEP => bend.sweep,
             _ => 0.0,
         };
-        let (before, after) = (sweep(self.bend(i)), sweep(self.bend(i + 1)));
-        Some(Motion {
+        let sweeps = (small(&before), small(&after));
+        let straight = Motion {
             start: piece.start,
             velocity: piece.velocity(),
             direction: direction(&piece),
@@ -109,44 +112,38 @@ impl<'a> Body<'a> {
             length: piece.to - piece.from,
             first: i == 0,
             last: i + 1 == self.polyline.pieces(),
-            half: self.half(if after > before { after } else { before }),
-        })
-    }
-
-    /// The turns at point `i`, which together have all directions from the piece before to the one after.
-    pub(super) fn turns(&self, i: usize) -> impl Iterator<Item = Motion> {
-        let bend = self.bend(i).filter(|bend| bend.sweep > SMALL_SWEEP);
-        let at = self.polyline.points().get(i).copied();
-        let arc = self.polyline.arc().get(i).copied();
-        let place = at.zip(arc).zip(bend);
-        place
-            .into_iter()
-            .flat_map(move |((at, arc), bend)| self.turns_of(at, arc, bend))
-    }
-
-    fn turns_of(&self, at: Point, arc: f32, bend: Bend) -> impl Iterator<Item = Motion> {
-        let whole = Arc::of(bend.before, bend.after, bend.middle);
-        let arcs = match whole.turns {
-            1 => [Some(whole), None],
-            _ => [
-                Some(Arc::halved(bend.before, bend.middle)),
-                Some(Arc::halved(bend.middle, bend.after)),
-            ],
+            half: self.half(if sweeps.1 > sweeps.0 {
+                sweeps.1
+            } else {
+                sweeps.0
+            }),
         };
-        let body = *self;
-        arcs.into_iter()
-            .flatten()
-            .flat_map(Arc::directions)
-            .map(move |(direction, spread)| Motion {
-                start: at,
-                velocity: Vector::new(0.0, 0.0),
-                direction,
-                arc,
-                length: 0.0,
-                first: false,
-                last: false,
-                half: body.half(body.radius * spread),
-            })
+        let arcs = before.map_or([None; 2], |bend| self.arcs(&bend));
+        Some(Stage { straight, arcs })
+    }
+
+    /// The arcs of directions that a bend is made of; none, if it is small.
+    fn arcs(&self, bend: &Bend) -> [Option<Arc>; 2] {
+        if bend.sweep <= SMALL_SWEEP {
+            return [None; 2];
+        }
+        let arc = |from, to, middle| {
+            let mut arc = Arc::of(from, to, middle);
+            arc.half = self.half(self.radius * arc.spread);
+            arc
+        };
+        let Bend {
+            before,
+            middle,
+            after,
+            ..
+        } = *bend;
+        let whole = arc(before, after, middle);
+        if whole.turns == 1 {
+            return [Some(whole), None];
+        }
+        [(before, middle), (middle, after)]
+            .map(|(from, to)| Some(arc(from, to, self::middle(from, to))))
     }
 
     fn half(&self, sweep: f32) -> (f32, f32) {
@@ -180,13 +177,43 @@ struct Arc {
     turns: u8,
     /// How far a direction of one of these turns is from the turn's middle, at most.
     spread: f32,
+    /// Half the footprint's length and width, inflated.
+    half: (f32, f32),
+}
+
+/// What moves on one piece of a polyline and at the point before it.
+#[derive(Clone, Copy)]
+pub(super) struct Stage {
+    straight: Motion,
+    arcs: [Option<Arc>; 2],
+}
+
+impl Stage {
+    /// The turns at the point, which together have all directions from the piece before to this one,
+    /// and the motion along the piece.
+    pub(super) fn motions(&self) -> impl Iterator<Item = Motion> {
+        let straight = self.straight;
+        let turns = self.arcs.into_iter().flatten().flat_map(move |arc| {
+            arc.directions().map(move |direction| Motion {
+                velocity: Vector::new(0.0, 0.0),
+                direction,
+                length: 0.0,
+                first: false,
+                last: false,
+                half: arc.half,
+                ..straight
+            })
+        });
+        core::iter::once(straight).chain(turns)
+    }
+
+    /// The motion along the piece.
+    pub(super) const fn straight(&self) -> &Motion {
+        &self.straight
+    }
 }
 
 impl Arc {
-    fn halved(from: Vector, to: Vector) -> Self {
-        Self::of(from, to, middle(from, to))
-    }
-
     /// Points of the chord at distance x have directions at distance x/m at most, m being the chord's
     /// distance from the origin.
     fn of(from: Vector, to: Vector, middle: Vector) -> Self {
@@ -205,15 +232,16 @@ impl Arc {
             to,
             turns,
             spread,
+            half: (0.0, 0.0),
         }
     }
 
-    /// The middle direction of each turn, and how far its directions are from that.
-    fn directions(self) -> impl Iterator<Item = (Vector, f32)> {
+    /// The middle direction of each turn.
+    fn directions(self) -> impl Iterator<Item = Vector> {
         (0..self.turns).map(move |i| {
             let along = (f32::from(i) + 0.5) / f32::from(self.turns);
             let point = self.from + (self.to - self.from) * along;
-            (point * (1.0 / length(&point)), self.spread)
+            point * (1.0 / length(&point))
         })
     }
 }

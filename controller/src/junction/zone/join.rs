@@ -1,5 +1,6 @@
 //! The occupied polygons that hang together become one zone.
 
+use super::clip::Cell;
 use super::{FAR, MAX_ZONES, Span, Zone};
 use crate::junction::conflict::ConflictKind;
 
@@ -23,6 +24,16 @@ pub(super) struct Patch {
 impl Patch {
     fn touches(&self, other: &Self) -> bool {
         self.ego.touches(other.ego) && self.other.touches(other.other)
+    }
+
+    /// Whether nothing that is occupied in the cell would change the patch.
+    pub(super) fn covers(&self, cell: &Cell) -> bool {
+        let holds = |outer: Span, inner: Span| outer.from <= inner.from && inner.to <= outer.to;
+        !cell.end
+            && holds(self.ego, cell.ego)
+            && holds(self.other, cell.other)
+            && holds(self.lead, cell.lead)
+            && (!cell.parallel || self.parallel.is_some_and(|known| holds(known, cell.ego)))
     }
 
     fn absorb(&mut self, other: &Self) {

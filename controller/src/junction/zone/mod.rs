@@ -14,12 +14,15 @@
 
 mod body;
 mod clip;
+#[cfg(test)]
+mod cover;
 mod join;
 mod near;
 
 use crate::junction::conflict::ConflictKind;
+use body::Stage;
 pub(crate) use body::{Body, sharp_kink};
-use clip::meet;
+use clip::{Cell, meet};
 use join::{Patch, insert};
 use near::near_pieces;
 
@@ -128,19 +131,17 @@ pub(crate) type Zones = [Option<Zone>; MAX_ZONES];
 /// 12 corners for each at which the footprints touch.
 pub(crate) fn zones(ego: &Body<'_>, other: &Body<'_>) -> Zones {
     let mut patches = [None; MAX_ZONES];
-    near_pieces(ego, other, |i, j| {
-        meet_pieces(&mut patches, (ego, i), (other, j))
-    });
+    near_pieces(ego, other, |a, b| meet_stages(&mut patches, a, b));
     patches.map(|patch| patch.map(|patch| patch.zone()))
 }
 
 /// The zone of two vehicles on one route: a lane throughout, with a band that is the same for both.
 pub(crate) fn zone_with_itself(body: &Body<'_>) -> Zone {
     let mut patches = [None; MAX_ZONES];
-    near_pieces(body, body, |i, j| {
-        // The other half is the same, mirrored.
-        if i <= j {
-            meet_pieces(&mut patches, (body, i), (body, j));
+    // The half in which the ego is ahead is the same, mirrored.
+    near_pieces(body, body, |a, b| {
+        if a.straight().arc <= b.straight().arc {
+            meet_stages(&mut patches, a, b);
         }
     });
     let apart = body.length() + INFLATION;
@@ -171,14 +172,14 @@ pub(crate) fn zone_with_itself(body: &Body<'_>) -> Zone {
     }
 }
 
-/// Adds what is occupied on one segment of each route, or in the turn before it.
-fn meet_pieces(
-    patches: &mut [Option<Patch>; MAX_ZONES],
-    (ego, i): (&Body<'_>, usize),
-    (other, j): (&Body<'_>, usize),
-) {
-    for a in ego.straight(i).into_iter().chain(ego.turns(i)) {
-        for b in other.straight(j).into_iter().chain(other.turns(j)) {
+/// Adds what is occupied on one segment of each route, and in the turns before it.
+fn meet_stages(patches: &mut [Option<Patch>; MAX_ZONES], a: &Stage, b: &Stage) {
+    let cell = Cell::of(a.straight(), b.straight());
+    if patches.iter().flatten().any(|patch| patch.covers(&cell)) {
+        return;
+    }
+    for a in a.motions() {
+        for b in b.motions() {
             if let Some(patch) = meet(&a, &b) {
                 insert(patches, patch);
             }

@@ -1,7 +1,8 @@
 //! Which pieces of two polylines are near each other: boxes around several pieces, then around each.
 
-use super::body::Body;
+use super::body::{Body, Stage};
 use crate::geometry::Point;
+use crate::junction::polyline::Piece;
 use core::ops::Range;
 
 /// Pieces that share one box.
@@ -29,6 +30,13 @@ impl Bounds {
         })
     }
 
+    fn around(p: Point, q: Point) -> Self {
+        Self {
+            low: p.inf(&q),
+            high: p.sup(&q),
+        }
+    }
+
     fn near(&self, other: &Self, reach: f32) -> bool {
         (self.low.x <= other.high.x + reach)
             & (other.low.x <= self.high.x + reach)
@@ -37,9 +45,16 @@ impl Bounds {
     }
 }
 
+/// Whether the discs around two pieces come as near as `reach` (m); rounding is allowed for.
+fn discs_near(a: &Piece, b: &Piece, reach: f32) -> bool {
+    let between = (b.start - a.start) + (b.end - a.end);
+    let twice = 1.01 * ((a.to - a.from) + (b.to - b.from)) + 2.0 * reach;
+    between.dot(&between) <= twice * twice
+}
+
 /// Calls `meet` for all pairs of pieces, of `a` and of `b`, at which the footprints may touch, and for
 /// some at which they cannot.
-pub(super) fn near_pieces(a: &Body<'_>, b: &Body<'_>, mut meet: impl FnMut(usize, usize)) {
+pub(super) fn near_pieces(a: &Body<'_>, b: &Body<'_>, mut meet: impl FnMut(&Stage, &Stage)) {
     let reach = a.reach() + b.reach();
     let (points, others) = (a.polyline.points(), b.polyline.points());
     for of_a in chunks(a.polyline.pieces()) {
@@ -49,14 +64,30 @@ pub(super) fn near_pieces(a: &Body<'_>, b: &Body<'_>, mut meet: impl FnMut(usize
             if !around_a.near(&around_b, reach) {
                 continue;
             }
+            // What of the chunk was needed before.
+            let mut known: [Option<Stage>; CHUNK] = [None; CHUNK];
             for i in of_a.clone() {
-                let piece = Bounds::of(points, i..i + 1);
+                let Some(this) = a.polyline.piece(i) else {
+                    continue;
+                };
+                let piece = Bounds::around(this.start, this.end);
                 if !piece.near(&around_b, reach) {
                     continue;
                 }
-                for j in of_b.clone() {
-                    if piece.near(&Bounds::of(others, j..j + 1), reach) {
-                        meet(i, j);
+                let Some(stage) = a.stage(i) else { continue };
+                for (j, known) in of_b.clone().zip(&mut known) {
+                    let close = b.polyline.piece(j).is_some_and(|other| {
+                        discs_near(&this, &other, reach)
+                            && piece.near(&Bounds::around(other.start, other.end), reach)
+                    });
+                    if !close {
+                        continue;
+                    }
+                    if known.is_none() {
+                        *known = b.stage(j);
+                    }
+                    if let Some(other) = known {
+                        meet(&stage, other);
                     }
                 }
             }
