@@ -272,3 +272,43 @@ pub(crate) fn sharp_kink(polyline: Polyline<'_>) -> Option<(usize, f32)> {
         (along < SHARP).then(|| (i, libm::atan2f(across, along).to_degrees()))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::junction::route::Route;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Whatever direction a vehicle has at a point, some motion there covers all of its corners.
+        #[test]
+        fn every_direction_at_a_point_is_covered_by_a_motion(
+            turn in prop_oneof![-90.0_f64..90.0, -6.0_f64..6.0, -1.3_f64..1.3],
+            share in 0.0_f64..1.0,
+            length in 0.5_f32..12.0,
+            width in 0.5_f32..3.0,
+        ) {
+            let (sin, cos) = turn.to_radians().sin_cos();
+            let points = [(-20.0, 0.0), (0.0, 0.0), (20.0 * cos as f32, 20.0 * sin as f32)];
+            let route = Route::<3>::new(points.map(|(x, y)| Point::new(x, y))).unwrap();
+            let body = Body::new(route.polyline(), Footprint { length, width }, 0.0);
+            let before = *body.stage(0).unwrap().straight();
+            let at: std::vec::Vec<_> = body.stage(1).unwrap().motions().collect();
+            let (sin, cos) = (share * turn.to_radians()).sin_cos();
+            let corners = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)].map(|(x, y)| {
+                let (l, w) = (0.5 * x * f64::from(length), 0.5 * y * f64::from(width));
+                (l * cos - w * sin, l * sin + w * cos)
+            });
+            let covers = |motion: &Motion| {
+                let (x, y) = (f64::from(motion.direction.x), f64::from(motion.direction.y));
+                // Without what is there for rounding, all but 0.1 mm.
+                let spare = f64::from(INFLATION) - 1.0e-4;
+                corners.iter().all(|(p, q)| {
+                    (p * x + q * y).abs() <= f64::from(motion.half.0) - spare
+                        && (q * x - p * y).abs() <= f64::from(motion.half.1) - spare
+                })
+            };
+            prop_assert!(at.iter().chain([&before]).any(covers));
+        }
+    }
+}
