@@ -179,6 +179,7 @@ struct Arc {
     spread: f32,
     /// Half the footprint's length and width, inflated.
     half: (f32, f32),
+    middle: Vector,
 }
 
 /// What moves on one piece of a polyline and at the point before it.
@@ -189,11 +190,10 @@ pub(super) struct Stage {
 }
 
 impl Stage {
-    /// The turns at the point, which together have all directions from the piece before to this one,
-    /// and the motion along the piece.
-    pub(super) fn motions(&self) -> impl Iterator<Item = Motion> {
+    /// The turns at the point, which together have all directions from the piece before to this one.
+    pub(super) fn turns(&self) -> impl Iterator<Item = Motion> {
         let straight = self.straight;
-        let turns = self.arcs.into_iter().flatten().flat_map(move |arc| {
+        self.arcs.into_iter().flatten().flat_map(move |arc| {
             arc.directions().map(move |direction| Motion {
                 velocity: Vector::new(0.0, 0.0),
                 direction,
@@ -203,8 +203,24 @@ impl Stage {
                 half: arc.half,
                 ..straight
             })
-        });
-        core::iter::once(straight).chain(turns)
+        })
+    }
+
+    /// Whether some turn at the point may touch something on a piece of another route.
+    pub(super) fn turns_near(&self, other: &Self) -> bool {
+        if self.arcs[0].is_none() {
+            return false;
+        }
+        let between = self.straight.start - other.straight.start;
+        let reach = other.straight.length + self.size() + other.size();
+        between.dot(&between) <= reach * reach
+    }
+
+    /// No part of any footprint is farther (m) than this from the piece.
+    fn size(&self) -> f32 {
+        let size = |half: (f32, f32)| half.0 + half.1;
+        let turned = self.arcs.iter().flatten().map(|arc| size(arc.half));
+        turned.fold(size(self.straight.half), |a, b| if b > a { b } else { a })
     }
 
     /// The motion along the piece.
@@ -233,12 +249,16 @@ impl Arc {
             turns,
             spread,
             half: (0.0, 0.0),
+            middle,
         }
     }
 
     /// The middle direction of each turn.
     fn directions(self) -> impl Iterator<Item = Vector> {
         (0..self.turns).map(move |i| {
+            if self.turns == 1 {
+                return self.middle;
+            }
             let along = (f32::from(i) + 0.5) / f32::from(self.turns);
             let point = self.from + (self.to - self.from) * along;
             point * (1.0 / length(&point))
@@ -293,7 +313,8 @@ mod tests {
             let route = Route::<3>::new(points.map(|(x, y)| Point::new(x, y))).unwrap();
             let body = Body::new(route.polyline(), Footprint { length, width }, 0.0);
             let before = *body.stage(0).unwrap().straight();
-            let at: std::vec::Vec<_> = body.stage(1).unwrap().motions().collect();
+            let at: std::vec::Vec<_> = body.stage(1).unwrap().turns().collect();
+            let after = *body.stage(1).unwrap().straight();
             let (sin, cos) = (share * turn.to_radians()).sin_cos();
             let corners = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)].map(|(x, y)| {
                 let (l, w) = (0.5 * x * f64::from(length), 0.5 * y * f64::from(width));
@@ -308,7 +329,7 @@ mod tests {
                         && (q * x - p * y).abs() <= f64::from(motion.half.1) - spare
                 })
             };
-            prop_assert!(at.iter().chain([&before]).any(covers));
+            prop_assert!(at.iter().chain([&before, &after]).any(covers));
         }
     }
 }

@@ -20,8 +20,8 @@ mod join;
 mod near;
 
 use crate::junction::conflict::ConflictKind;
-use body::Stage;
 pub(crate) use body::{Body, sharp_kink};
+use body::{Motion, Stage};
 use clip::{Cell, meet};
 use join::{Patch, insert};
 use near::near_pieces;
@@ -178,11 +178,19 @@ fn meet_stages(patches: &mut [Option<Patch>; MAX_ZONES], a: &Stage, b: &Stage) {
     if patches.iter().flatten().any(|patch| patch.covers(&cell)) {
         return;
     }
-    for a in a.motions() {
-        for b in b.motions() {
-            if let Some(patch) = meet(&a, &b) {
-                insert(patches, patch);
-            }
+    let mut add = |a: &Motion, b: &Motion| {
+        if let Some(patch) = meet(a, b) {
+            insert(patches, patch);
+        }
+    };
+    add(a.straight(), b.straight());
+    if b.turns_near(a) {
+        b.turns().for_each(|turn| add(a.straight(), &turn));
+    }
+    if a.turns_near(b) {
+        for turn in a.turns() {
+            add(&turn, b.straight());
+            b.turns().for_each(|other| add(&turn, &other));
         }
     }
 }

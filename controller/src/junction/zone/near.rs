@@ -74,7 +74,7 @@ pub(super) fn near_pieces(a: &Body<'_>, b: &Body<'_>, mut meet: impl FnMut(&Stag
                 if !piece.near(&around_b, reach) {
                     continue;
                 }
-                let Some(stage) = a.stage(i) else { continue };
+                let mut stage = None;
                 for (j, known) in of_b.clone().zip(&mut known) {
                     let close = b.polyline.piece(j).is_some_and(|other| {
                         discs_near(&this, &other, reach)
@@ -86,8 +86,11 @@ pub(super) fn near_pieces(a: &Body<'_>, b: &Body<'_>, mut meet: impl FnMut(&Stag
                     if known.is_none() {
                         *known = b.stage(j);
                     }
-                    if let Some(other) = known {
-                        meet(&stage, other);
+                    if stage.is_none() {
+                        stage = a.stage(i);
+                    }
+                    if let (Some(stage), Some(other)) = (&stage, known) {
+                        meet(stage, other);
                     }
                 }
             }
