@@ -173,7 +173,7 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
     #[inline(never)]
     pub fn build(mut self) -> Result<Junction<R, P, E>, JunctionError> {
         let value = self.junction.tolerance;
-        if !(value >= 0.0 && value <= MAX_TOLERANCE) {
+        if !(0.0..=MAX_TOLERANCE).contains(&value) {
             return Err(JunctionError::Tolerance { value });
         }
         if self.junction.paths.is_empty() {
