@@ -98,7 +98,10 @@ impl<'a> Body<'a> {
     #[inline(never)]
     pub(super) fn stage(&self, i: usize) -> Option<Stage> {
         let piece = self.polyline.piece(i)?;
-        let (before, after) = (self.bend(i), self.bend(i + 1));
+        let along = direction(&piece);
+        let next_to = |i: Option<usize>| Some(direction(&self.polyline.piece(i?)?));
+        let before = next_to(i.checked_sub(1)).map(|before| self.bend(before, along));
+        let after = next_to(i.checked_add(1)).map(|after| self.bend(along, after));
         let small = |bend: &Option<Bend>| match bend {
             Some(bend) if bend.sweep <= SMALL_SWEEP => bend.sweep,
             _ => 0.0,
@@ -107,7 +110,7 @@ impl<'a> Body<'a> {
         let straight = Motion {
             start: piece.start,
             velocity: piece.velocity(),
-            direction: direction(&piece),
+            direction: along,
             arc: piece.from,
             length: piece.to - piece.from,
             first: i == 0,
@@ -154,17 +157,15 @@ impl<'a> Body<'a> {
         )
     }
 
-    /// The change of direction at point `i`; `None` at the ends.
-    fn bend(&self, i: usize) -> Option<Bend> {
-        let before = direction(&self.polyline.piece(i.checked_sub(1)?)?);
-        let after = direction(&self.polyline.piece(i)?);
+    /// The change from one direction to another.
+    fn bend(&self, before: Vector, after: Vector) -> Bend {
         let middle = middle(before, after);
-        Some(Bend {
+        Bend {
             before,
             middle,
             after,
             sweep: self.radius * length(&(middle - before)),
-        })
+        }
     }
 }
 

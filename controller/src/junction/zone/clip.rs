@@ -12,7 +12,7 @@ const PARALLEL: f32 = 0.866;
 /// A polygon in the (s, t) plane, both counted from the motions' starts.
 type Polygon = Vec<Point, 12>;
 
-/// A segment of each route: where their vehicles are together.
+/// Where two motions can be at most.
 pub(super) struct Cell {
     pub(super) ego: Span,
     pub(super) other: Span,
@@ -37,10 +37,16 @@ impl Cell {
                 from: ego.from - other.to - INFLATION,
                 to: ego.to - other.from + INFLATION,
             },
-            parallel: a.direction.dot(&b.direction) > PARALLEL,
+            parallel: parallel(a, b),
             end: a.first || a.last || b.first || b.last,
         }
     }
+}
+
+/// Whether the vehicles point the same way. Turns do not count: they are in no lane.
+fn parallel(a: &Motion, b: &Motion) -> bool {
+    let turn = a.length == 0.0 || b.length == 0.0;
+    !turn && a.direction.dot(&b.direction) > PARALLEL
 }
 
 /// What of the two motions is occupied.
@@ -104,17 +110,17 @@ impl Limit {
 }
 
 /// The four directions in which two rectangles can be apart, each with the distance of their
-/// centres from which they are.
+/// centres from which they are. Across comes first: most segments near each other are lanes side by side.
 fn axes(a: &Motion, b: &Motion) -> [(Vector, f32); 4] {
     let normal = |v: Vector| Vector::new(-v.y, v.x);
     let cos = a.direction.dot(&b.direction).abs();
     let sin = a.direction.perp(&b.direction).abs();
     let ((l, w), (other_l, other_w)) = (a.half, b.half);
     [
-        (a.direction, l + other_l * cos + other_w * sin),
         (normal(a.direction), w + other_l * sin + other_w * cos),
-        (b.direction, other_l + l * cos + w * sin),
         (normal(b.direction), other_w + l * sin + w * cos),
+        (a.direction, l + other_l * cos + other_w * sin),
+        (b.direction, other_l + l * cos + w * sin),
     ]
 }
 
@@ -166,8 +172,7 @@ fn bounds(a: &Motion, b: &Motion, polygon: &Polygon) -> Option<Patch> {
     let starts = (a.first && ego.from <= TOUCHING) || (b.first && other.from <= TOUCHING);
     let ends =
         (a.last && ego.to >= a.length - TOUCHING) || (b.last && other.to >= b.length - TOUCHING);
-    let turning = a.length == 0.0 || b.length == 0.0;
-    let parallel = !turning && a.direction.dot(&b.direction) > PARALLEL;
+    let parallel = parallel(a, b);
     let offset = a.arc - b.arc;
     Some(Patch {
         ego: placed(ego, a),

@@ -27,7 +27,7 @@ impl Patch {
     }
 
     /// Whether nothing that is occupied in the cell would change the patch.
-    pub(super) fn covers(&self, cell: &Cell) -> bool {
+    fn covers(&self, cell: &Cell) -> bool {
         let holds = |outer: Span, inner: Span| outer.from <= inner.from && inner.to <= outer.to;
         !cell.end
             && holds(self.ego, cell.ego)
@@ -66,6 +66,14 @@ impl Patch {
             },
         }
     }
+}
+
+/// Whether nothing that is occupied in the cell would change the patches: one covers it, and no other
+/// one touches it.
+pub(super) fn covered(patches: &[Option<Patch>; MAX_ZONES], cell: &Cell) -> bool {
+    let touches = |patch: &&Patch| patch.ego.touches(cell.ego) && patch.other.touches(cell.other);
+    let mut touching = patches.iter().flatten().filter(touches);
+    touching.next().is_some_and(|patch| patch.covers(cell)) && touching.next().is_none()
 }
 
 /// Adds a patch, or widens those that it touches: what hangs together ends up in one.

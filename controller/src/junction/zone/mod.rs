@@ -23,7 +23,7 @@ use crate::junction::conflict::ConflictKind;
 pub(crate) use body::{Body, sharp_kink};
 use body::{Motion, Stage};
 use clip::{Cell, meet};
-use join::{Patch, insert};
+use join::{Patch, covered, insert};
 use near::near_pieces;
 
 /// Most zones of one pair of routes; if the routes meet more often, the last zone covers the rest.
@@ -174,12 +174,10 @@ pub(crate) fn zone_with_itself(body: &Body<'_>) -> Zone {
 
 /// Adds what is occupied on one segment of each route, and in the turns before it.
 fn meet_stages(patches: &mut [Option<Patch>; MAX_ZONES], a: &Stage, b: &Stage) {
-    let cell = Cell::of(a.straight(), b.straight());
-    if patches.iter().flatten().any(|patch| patch.covers(&cell)) {
-        return;
-    }
     let mut add = |a: &Motion, b: &Motion| {
-        if let Some(patch) = meet(a, b) {
+        if !covered(patches, &Cell::of(a, b))
+            && let Some(patch) = meet(a, b)
+        {
             insert(patches, patch);
         }
     };

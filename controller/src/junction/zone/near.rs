@@ -30,10 +30,10 @@ impl Bounds {
         })
     }
 
-    fn around(p: Point, q: Point) -> Self {
+    fn around(piece: &Piece) -> Self {
         Self {
-            low: p.inf(&q),
-            high: p.sup(&q),
+            low: piece.start.inf(&piece.end),
+            high: piece.start.sup(&piece.end),
         }
     }
 
@@ -59,42 +59,57 @@ pub(super) fn near_pieces(a: &Body<'_>, b: &Body<'_>, mut meet: impl FnMut(&Stag
     let (points, others) = (a.polyline.points(), b.polyline.points());
     for of_a in chunks(a.polyline.pieces()) {
         let around_a = Bounds::of(points, of_a.clone());
+        let mut stages_a = Stages::of(a, of_a.start);
         for of_b in chunks(b.polyline.pieces()) {
             let around_b = Bounds::of(others, of_b.clone());
             if !around_a.near(&around_b, reach) {
                 continue;
             }
-            // What of the chunk was needed before.
-            let mut known: [Option<Stage>; CHUNK] = [None; CHUNK];
+            let mut stages_b = Stages::of(b, of_b.start);
             for i in of_a.clone() {
-                let Some(this) = a.polyline.piece(i) else {
+                let Some(piece) = a.polyline.piece(i) else {
                     continue;
                 };
-                let piece = Bounds::around(this.start, this.end);
-                if !piece.near(&around_b, reach) {
+                let around = Bounds::around(&piece);
+                if !around.near(&around_b, reach) {
                     continue;
                 }
-                let mut stage = None;
-                for (j, known) in of_b.clone().zip(&mut known) {
+                for j in of_b.clone() {
                     let close = b.polyline.piece(j).is_some_and(|other| {
-                        discs_near(&this, &other, reach)
-                            && piece.near(&Bounds::around(other.start, other.end), reach)
+                        discs_near(&piece, &other, reach)
+                            && around.near(&Bounds::around(&other), reach)
                     });
-                    if !close {
-                        continue;
-                    }
-                    if known.is_none() {
-                        *known = b.stage(j);
-                    }
-                    if stage.is_none() {
-                        stage = a.stage(i);
-                    }
-                    if let (Some(stage), Some(other)) = (&stage, known) {
-                        meet(stage, other);
+                    if close && let (Some(a), Some(b)) = (stages_a.at(i), stages_b.at(j)) {
+                        meet(a, b);
                     }
                 }
             }
         }
+    }
+}
+
+/// What moves on the pieces of one chunk, worked out when it is first needed.
+struct Stages<'a> {
+    body: &'a Body<'a>,
+    from: usize,
+    known: [Option<Stage>; CHUNK],
+}
+
+impl<'a> Stages<'a> {
+    const fn of(body: &'a Body<'a>, from: usize) -> Self {
+        Self {
+            body,
+            from,
+            known: [None; CHUNK],
+        }
+    }
+
+    fn at(&mut self, i: usize) -> Option<&Stage> {
+        let known = self.known.get_mut(i.checked_sub(self.from)?)?;
+        if known.is_none() {
+            *known = self.body.stage(i);
+        }
+        known.as_ref()
     }
 }
 
