@@ -177,8 +177,10 @@ impl<const N: usize> Tracks<N> {
             (Some(_), Err(fault)) => findings.fault = findings.fault.or(Some(fault)),
             (None, Ok(vehicle)) => {
                 let other = Other::new(contract, number, path, &vehicle, now);
+                // One that seems to have left may seem not to have in the next observation: it is known from now on.
+                let least = other.bounds.s.from - 2.0 * contract.position_error;
                 let conflict = way.conflict(path);
-                if let Some(entry) = conflict.and_then(|c| other.entry::<R>(c, ego.least)) {
+                if let Some(entry) = conflict.and_then(|c| entry::<R>(c, ego.least, least)) {
                     self.add::<R>(way, ego, (other, entry), findings);
                 }
             }
@@ -241,6 +243,14 @@ fn unplaced(way: Way<'_>, path: PathId, ego: f32) -> Option<f32> {
             .filter_map(|(_, conflict)| first(conflict))
             .reduce(f32::min),
     }
+}
+
+/// Where (m) the ego enters the first zone that neither it, at `ego` (m) at least, nor the other, at `other` (m) at least,
+/// has left.
+fn entry<R: Rules>(conflict: &RouteConflict, ego: f32, other: f32) -> Option<f32> {
+    let ahead = |zone: &&Zone| ego < zone.ego.to && !R::left(zone, other);
+    let entries = conflict.zones().filter(ahead).map(|zone| zone.ego.from);
+    entries.reduce(f32::min)
 }
 
 impl Other {
@@ -317,10 +327,7 @@ impl Other {
 
     /// Where (m) the ego, which is at `ego` (m) at least, enters the first zone that neither has left.
     fn entry<R: Rules>(&self, conflict: &RouteConflict, ego: f32) -> Option<f32> {
-        let least = self.bounds.s.from;
-        let ahead = |zone: &&Zone| ego < zone.ego.to && !R::left(zone, least);
-        let entries = conflict.zones().filter(ahead).map(|zone| zone.ego.from);
-        entries.reduce(f32::min)
+        entry::<R>(conflict, ego, self.bounds.s.from)
     }
 
     /// Whether the ego is ahead of it in lane number `index`, and it keeps its distance.

@@ -291,13 +291,11 @@ fn one_that_has_left_its_zone_is_no_newcomer_however_its_sensors_err() {
     let mut run = Run::new(&site, contract);
     let end = zone(&site, 1).other.to;
     // It stands just behind its zone, and is seen now behind and now in front of its end.
-    let mut speed = 8.0_f32;
     for step in 0..40_u8 {
         let error = if step % 2 == 0 { 0.29 } else { -0.29 };
-        let own = [30.0 + 0.8 * f32::from(step), speed];
-        let decision = run.decide(own, &[(1, [end + 0.02 + error, 0.0])], 0.0);
+        let own = [30.0 + 0.8 * f32::from(step), 8.0];
+        let decision = run.decide(own, &[(1, [end + 0.31 + error, 0.0])], 0.0);
         assert!(decision.plan.is_some(), "step {step}: {decision}");
         assert_eq!(decision.breach, None);
-        speed = 8.0;
     }
 }
