@@ -8,7 +8,7 @@ use crate::observation::Vehicle;
 /// Whether a vehicle is at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum RestState {
-    /// Nobody takes it for one at rest.
+    /// It moves, and did so since it was last seen to: nobody takes it for one at rest.
     No,
     /// Somebody may, who sees it otherwise.
     Perhaps,
@@ -20,18 +20,32 @@ impl RestState {
     /// What a vehicle does that is sensed at `speed` (m/s); to be at rest is to have [`Contract::rest_speed`] or less.
     ///
     /// One surely at rest here is faster than that by twice the error at most, and any other
-    /// sensor shows one error more: for that one it is perhaps at rest.
+    /// sensor shows one error more: for that one it is perhaps at rest. One that moves could not have been
+    /// surely at rest between two calls that both show it.
     #[must_use]
     pub fn of(contract: &Contract, speed: f32) -> Self {
         let (slow, error) = (contract.rest_speed(), contract.speed_error);
         if speed <= slow + error {
             Self::Surely
-        } else if speed <= slow + 3.0 * error {
+        } else if speed <= slow + 3.0 * error + dip(contract) {
             Self::Perhaps
         } else {
             Self::No
         }
     }
+}
+
+/// By how much (m/s) a vehicle may have been slower, or faster, between two calls than at both.
+pub(super) fn dip(contract: &Contract) -> f32 {
+    let (up, down) = (contract.other.acceleration, contract.other.braking);
+    // It brakes first and then accelerates, or the other way round.
+    (contract.period + 2.0 * contract.jitter) * up * down / (up + down)
+}
+
+/// Calls in a row that show a vehicle move, after which every other shield had a call in the meantime.
+fn calls_in_between(contract: &Contract) -> u8 {
+    // Two calls are a period and twice the jitter apart at most, three at least two periods less twice the jitter.
+    if contract.jitter > 0.0 { 3 } else { 2 }
 }
 
 /// Periods from the end of one vehicle's turn to the beginning of the other's. One seen at rest until then
@@ -127,8 +141,8 @@ impl Arrival {
 pub(super) struct Standstill {
     pub(super) perhaps: u16,
     pub(super) surely: u16,
-    /// It moved when it was last seen: perhaps for that one moment only, which somebody else may have missed.
-    moved: bool,
+    /// In how many of the last calls it was seen to move: perhaps between two calls of somebody else only.
+    moved: u8,
 }
 
 impl Default for Standstill {
@@ -137,23 +151,25 @@ impl Default for Standstill {
         Self {
             perhaps: u16::MAX,
             surely: 0,
-            moved: false,
+            moved: 0,
         }
     }
 }
 
 impl Standstill {
-    /// One more period.
-    fn note(&mut self, rest: RestState, arrived: Arrived) {
-        let moves = rest == RestState::No;
+    /// One more period. It has moved for everybody after so many `calls` in a row that show it.
+    fn note(&mut self, rest: RestState, arrived: Arrived, calls: u8) {
+        self.moved = match rest {
+            RestState::No => self.moved.saturating_add(1).min(calls),
+            RestState::Perhaps | RestState::Surely => 0,
+        };
         let count = |keeps: bool, periods: u16| {
             if keeps { periods.saturating_add(1) } else { 0 }
         };
-        let keeps = arrived != Arrived::Not && !(moves && self.moved);
+        let keeps = arrived != Arrived::Not && self.moved < calls;
         self.perhaps = count(keeps, self.perhaps);
         let sure = rest == RestState::Surely && arrived == Arrived::Surely;
         self.surely = count(sure, self.surely);
-        self.moved = moves;
     }
 }
 
@@ -202,7 +218,8 @@ impl Presence {
             None if self.arrival.by.is_some() => Arrived::Surely,
             None => Arrived::Perhaps,
         };
-        self.standstill.note(sighting.rest, arrived);
+        let calls = calls_in_between(contract);
+        self.standstill.note(sighting.rest, arrived, calls);
     }
 
     /// Notes what is sensed within a period that has been noted already.
@@ -215,6 +232,12 @@ impl Presence {
     /// Nothing is known any more of how long it has rested.
     pub fn forget(&mut self) {
         self.standstill = Standstill::default();
+    }
+
+    /// Periods for which it has perhaps, and for which it has surely rested.
+    #[must_use]
+    pub fn rested(&self) -> [u16; 2] {
+        [self.standstill.perhaps, self.standstill.surely]
     }
 
     /// Whether this vehicle came before `other` while both rest, so that the other knows it, too: by how much
