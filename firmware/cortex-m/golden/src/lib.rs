@@ -1,7 +1,7 @@
-//! The golden file: junctions, what is observed in them, and what the host decides, as 32-bit words.
+//! The golden file: junctions, what is observed on the way through them, and what the host decides, as 32-bit words.
 //!
 //! Junction after junction: the number of others and of steps, a route for each vehicle with the ego's first
-//! ([`ROUTE`] words each), then for each step the observation ([`QUESTION`] words) and the decision
+//! ([`ROUTE`] words each), then for each step the question ([`QUESTION`] words) and the decision
 //! ([`ANSWER`] words). Host and image read it by this code. Numbers are bit patterns, so that what is
 //! no number is asked about as well.
 #![no_std]
@@ -13,27 +13,44 @@ pub use answer::{ANSWER, answer};
 
 use cede_controller::geometry::unit;
 use cede_controller::{
-    Class, Contract, Drive, Footprint, Instant, Junction, Observation, Part, PathId, Point, Policy,
-    Pose, Route, RouteError, Track, Vehicle,
+    Approach, Class, Contract, Drive, EnterError, Footprint, Instant, JunctionError, Observation,
+    Part, PathId, Point, Policy, Pose, Route, RouteError, Track, Vehicle,
 };
 
-/// Others in a junction, at most.
+/// The paths of the ego and of each other; nobody but the ego is driven.
+pub type Junction = cede_controller::Junction<{ 1 + OTHERS }, { (1 + OTHERS) * POINTS }, 1>;
+
+/// Others at a junction, at most.
 pub const OTHERS: usize = 8;
 /// Points of a route, at most.
 pub const POINTS: usize = 8;
 /// Words of a route: length and width of its vehicle, who goes first (0 unsettled, 1 the ego, 2 the
 /// other), the number of points, and the points.
 pub const ROUTE: usize = 4 + 2 * POINTS;
-/// Words of a vehicle: 1 and its track number, or 0 if it is not there; s, speed, x, y, and the direction's x and y.
+/// Words of a vehicle: whether it is there, s, speed, x, y, and the direction's x and y.
 pub const VEHICLE: usize = 7;
-/// Words of an observation: when it is made, in ms; the ego and the others.
+/// Words of a question: milliseconds of the clock, the ego and the others.
 pub const QUESTION: usize = 1 + VEHICLE * (1 + OTHERS);
 
-/// A path for each vehicle; the ego's, which comes first, can be entered.
-pub type Site = Junction<{ OTHERS + 1 }, { POINTS * (OTHERS + 1) }, 1>;
+/// Why there is no junction.
+#[derive(Clone, Copy, Debug)]
+pub enum Wrong {
+    /// A polyline is no route.
+    Route(RouteError),
+    /// The routes make no junction.
+    Junction(JunctionError),
+}
 
-/// The ego's path.
-pub const EGO: PathId = PathId::new(0);
+impl core::fmt::Display for Wrong {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Route(error) => error.fmt(f),
+            Self::Junction(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for Wrong {}
 
 /// A junction of the golden file.
 #[derive(Clone, Copy, Debug)]
@@ -57,27 +74,43 @@ impl<'a> Golden<'a> {
         })
     }
 
-    /// The junction; `None` if the routes make none.
-    #[must_use]
-    pub fn site(&self) -> Option<Site> {
-        let mut builder = Site::builder();
+    /// The junction.
+    ///
+    /// # Errors
+    /// If the routes make none.
+    // Not inlined, so that it fills the caller's junction and no copy of it.
+    #[inline(never)]
+    pub fn junction(&self) -> Result<Junction, Wrong> {
+        let mut builder = Junction::builder();
         for words in self.routes {
-            let path = builder.path(&route(words).ok()?, Class::Car, footprint(words));
-            let path = path.ok()?;
-            match words[2] {
-                1 => builder.right_of_way(EGO, path).ok()?,
-                2 => builder.right_of_way(path, EGO).ok()?,
-                _ => {}
-            }
+            let route = route(words).map_err(Wrong::Route)?;
+            let path = builder.path(&route, Class::Car, footprint(words));
+            let path = path.map_err(Wrong::Junction)?;
+            let settled = match words {
+                [_, _, 1, ..] => builder.right_of_way(EGO, path),
+                [_, _, 2, ..] => builder.right_of_way(path, EGO),
+                _ => Ok(()),
+            };
+            // The ego has no right of way over itself.
+            let _ = settled;
         }
-        builder.build().ok()
+        builder.build().map_err(Wrong::Junction)
     }
 }
 
-/// What is asked: within the worst-case contract, as the left-turner.
-#[must_use]
-pub const fn drive<'w>(policy: &Policy<'w>) -> Drive<'w> {
-    Drive::new(*policy, Contract::WORST_CASE, Part::Left)
+/// The ego's path.
+pub const EGO: PathId = PathId::new(0);
+
+/// The approach that is asked: within the worst-case contract, as the left-turner.
+///
+/// # Errors
+/// If the ego cannot enter.
+#[inline(never)]
+pub fn approach<'j, 'w>(
+    policy: &Policy<'w>,
+    junction: &'j Junction,
+) -> Result<Approach<'j, 'w>, EnterError> {
+    Drive::new(*policy, Contract::WORST_CASE, Part::Left).enter(junction, EGO)
 }
 
 #[inline(never)]
@@ -95,42 +128,51 @@ fn footprint([length, width, ..]: &[u32; ROUTE]) -> Footprint {
     }
 }
 
-/// What the words of a step observe.
-#[derive(Clone, Debug)]
-pub struct Seen {
+/// What is asked in one step.
+#[derive(Clone, Copy, Debug)]
+pub struct Question {
     /// When.
     pub now: Instant,
     ego: Vehicle,
     tracks: [Track; OTHERS],
-    /// As many are there.
+    /// How many of them there are.
     count: usize,
 }
 
-impl Seen {
-    /// Reads the words of a step. Not inlined: it would take its room twice.
+impl Question {
+    /// What the words of a step ask. Not inlined: it would take its room twice.
     #[must_use]
     #[inline(never)]
-    pub fn read([now, vehicles @ ..]: &[u32; QUESTION]) -> Self {
+    pub fn new([millis, vehicles @ ..]: &[u32; QUESTION]) -> Self {
         let nobody = [0; VEHICLE];
-        let vehicles = vehicles.as_chunks().0;
-        let (ego, others) = vehicles.split_first().unwrap_or((&nobody, &[]));
-        let mut seen = Self {
-            now: Instant::from_millis((*now).into()),
-            ego: vehicle(ego),
-            tracks: [Track::on(0, EGO, vehicle(&nobody)); OTHERS],
+        let (ego, others) = vehicles
+            .as_chunks()
+            .0
+            .split_first()
+            .unwrap_or((&nobody, &[]));
+        let ego = vehicle(ego);
+        let mut question = Self {
+            now: Instant::from_millis(u64::from(*millis)),
+            ego,
+            tracks: [Track::on(0, EGO, ego); OTHERS],
             count: 0,
         };
-        for (path, words) in (1..).map(PathId::new).zip(others) {
-            let number = words[0].checked_sub(1);
-            if let (Some(number), Some(place)) = (number, seen.tracks.get_mut(seen.count)) {
-                *place = Track::on(number as u16, path, vehicle(words));
-                seen.count += 1;
+        let mut places = question.tracks.iter_mut();
+        for (number, words) in (1_u8..).zip(others) {
+            if words[0] == 0 {
+                continue;
+            }
+            if let Some(place) = places.next() {
+                // The numbers of tracks are not those of paths.
+                let track = 1000 - 7 * u16::from(number);
+                *place = Track::on(track, PathId::new(number), vehicle(words));
+                question.count += 1;
             }
         }
-        seen
+        question
     }
 
-    /// The observation.
+    /// What is observed.
     #[must_use]
     pub fn observation(&self) -> Observation<'_> {
         Observation {

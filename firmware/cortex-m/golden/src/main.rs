@@ -1,21 +1,20 @@
 //! Writes the golden file: `cede-golden FOLDER`. The embedded policy drives.
 //!
 //! Everything else comes from one fixed generator: vehicles that start at random and drive as they please,
-//! within the contract for most of the time; now and then one vanishes, jumps, or is no number at all, and a call is
-//! late or repeated.
+//! within the contract for most of the time; now and then one vanishes, jumps, or is no number at all, and a call is late.
 
 mod random;
 mod traffic;
 
 use cede_controller::Policy;
-use cede_golden::{EGO, Golden, Seen, answer, drive};
+use cede_golden::{Golden, Question, answer, approach};
 use random::Random;
 use std::io::{Error, Result};
 use std::path::Path;
 use traffic::Traffic;
 
 /// Junctions, with 1 to 8 others in turn, and their steps of 0.1 s.
-const SITES: usize = 24;
+const SCENES: usize = 24;
 const STEPS: usize = 60;
 
 fn main() -> Result<()> {
@@ -24,8 +23,8 @@ fn main() -> Result<()> {
     let mut random = Random::new(1);
     let policy = Policy::new(cede_controller::policy::embedded::words()).map_err(Error::other)?;
     let mut golden = Vec::new();
-    for i in 0..SITES {
-        golden.extend(site(&policy, &mut random, 1 + i % 8)?);
+    for i in 0..SCENES {
+        golden.extend(scene(&policy, &mut random, 1 + i % 8)?);
     }
     write(&Path::new(&folder).join("golden.bin"), &golden)
 }
@@ -36,21 +35,20 @@ fn write(path: &Path, words: &[u32]) -> Result<()> {
 }
 
 /// A junction with `others` others, and what `policy` decides in it.
-fn site(policy: &Policy<'_>, random: &mut Random, others: usize) -> Result<Vec<u32>> {
-    let none = || Error::other("routes that are no junction");
+fn scene(policy: &Policy<'_>, random: &mut Random, others: usize) -> Result<Vec<u32>> {
     let mut traffic = Traffic::new(random, others);
     let mut words = vec![others as u32, 0];
     words.extend(traffic.routes());
-    let golden = Golden::next(&mut words.as_slice()).ok_or_else(none)?;
-    let site = golden.site().ok_or_else(none)?;
-    let approach = drive(policy).enter(&site, EGO);
-    let mut approach = approach.map_err(Error::other)?;
+    let golden = Golden::next(&mut words.as_slice());
+    let golden = golden.ok_or_else(|| Error::other("no junction at the end"))?;
+    let junction = golden.junction().map_err(Error::other)?;
+    let mut approach = approach(policy, &junction).map_err(Error::other)?;
     words[1] = STEPS as u32;
     for _ in 0..STEPS {
-        let question = traffic.observe(random);
-        let seen = Seen::read(&question);
-        let decision = approach.decide(seen.now, &seen.observation());
-        words.extend(question);
+        let words_of_step = traffic.observe(random);
+        let question = Question::new(&words_of_step);
+        let decision = approach.decide(question.now, &question.observation());
+        words.extend(words_of_step);
         words.extend(answer(&decision));
         traffic.advance(random, decision.acceleration);
     }

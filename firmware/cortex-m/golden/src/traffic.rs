@@ -1,8 +1,8 @@
-//! Vehicles on straight and bent routes through one intersection.
+//! Vehicles on straight and bent routes through one junction.
 
 use crate::random::Random;
 use cede_controller::kinematics::STEP;
-use cede_controller::{Contract, Point, Route};
+use cede_controller::{Class, Contract, Footprint, Junction, Point, Route};
 use cede_golden::{POINTS, QUESTION, ROUTE, VEHICLE};
 
 /// What the others may do by the worst-case contract, in m/s² and m/s.
@@ -12,16 +12,13 @@ const SPEED: f32 = Contract::WORST_CASE.other().max_speed;
 /// The ego and the others.
 pub(crate) struct Traffic {
     vehicles: Vec<Vehicle>,
-    /// When they are seen, in ms.
-    now: u32,
+    millis: u32,
 }
 
 struct Vehicle {
     points: Vec<Point>,
     route: Route<POINTS>,
     right_of_way: u32,
-    /// Of its track.
-    number: u32,
     there: bool,
     s: f32,
     speed: f32,
@@ -32,7 +29,7 @@ impl Traffic {
     pub(crate) fn new(random: &mut Random, others: usize) -> Self {
         Self {
             vehicles: (0..=others).map(|_| Vehicle::new(random)).collect(),
-            now: random.word() % 10_000,
+            millis: 1_000,
         }
     }
 
@@ -43,10 +40,13 @@ impl Traffic {
     /// What is seen; now and then something that cannot be.
     pub(crate) fn observe(&self, random: &mut Random) -> [u32; QUESTION] {
         let mut question = [0; QUESTION];
-        let (now, vehicles) = question.split_at_mut(1);
-        now[0] = self.now;
-        let places = vehicles.as_chunks_mut::<VEHICLE>().0.iter_mut();
-        for (words, vehicle) in places.zip(&self.vehicles) {
+        question[0] = self.millis;
+        for (words, vehicle) in question[1..]
+            .as_chunks_mut::<VEHICLE>()
+            .0
+            .iter_mut()
+            .zip(&self.vehicles)
+        {
             *words = vehicle.seen();
             if random.once_in(100) {
                 let place = 1 + random.word() as usize % (VEHICLE - 1);
@@ -58,12 +58,7 @@ impl Traffic {
 
     /// The ego does as it is told, the others as they please.
     pub(crate) fn advance(&mut self, random: &mut Random, acceleration: f32) {
-        self.now += match random.word() % 40 {
-            0 => 0,
-            1 => 130,
-            2 => 300,
-            _ => 100,
-        };
+        self.millis += if random.once_in(50) { 230 } else { 100 };
         for (i, vehicle) in self.vehicles.iter_mut().enumerate() {
             if i == 0 {
                 vehicle.acceleration = acceleration;
@@ -78,24 +73,17 @@ impl Traffic {
 impl Vehicle {
     /// In from one side, a bend in the middle, out to another.
     fn new(random: &mut Random) -> Self {
-        let side = random.within(std::f32::consts::PI);
-        let turn = random.within(1.3);
-        let arm = |angle: f32| Point::new(60.0 * angle.cos(), 60.0 * angle.sin());
-        let (from, to) = (arm(side), arm(side + std::f32::consts::PI + turn));
-        let (entry, exit) = (from * 0.15, to * 0.15);
-        let points = vec![
-            from,
-            entry,
-            Point::from((entry.coords + exit.coords) * 0.35),
-            exit,
-            to,
-        ];
+        let points = loop {
+            let points = points(random);
+            if drivable(&points) {
+                break points;
+            }
+        };
         let route = Route::new(points.iter().copied()).expect("the points are apart");
         Self {
             points,
             route,
             right_of_way: random.word() % 3,
-            number: random.word() % 65_536,
             there: !random.once_in(6),
             s: 20.0 + random.within(20.0),
             speed: 5.0 + random.within(5.0),
@@ -125,9 +113,7 @@ impl Vehicle {
             pose.direction.x,
             pose.direction.y,
         ];
-        // One that has left its path is there no more.
-        let there = self.there && self.s <= self.route.length();
-        let mut words = [if there { 1 + self.number } else { 0 }; VEHICLE];
+        let mut words = [u32::from(self.there); VEHICLE];
         for (place, number) in words[1..].iter_mut().zip(numbers) {
             *place = number.to_bits();
         }
@@ -151,4 +137,25 @@ impl Vehicle {
         self.s += 0.5 * (self.speed + speed) * STEP;
         self.speed = speed;
     }
+}
+
+/// In from one side, a bend in the middle, out to another.
+fn points(random: &mut Random) -> Vec<Point> {
+    let mut arm = |radius: f32| {
+        let angle = random.within(std::f32::consts::PI);
+        Point::new(radius * angle.cos(), radius * angle.sin())
+    };
+    let (from, to) = (arm(45.0), arm(45.0));
+    let (entry, exit) = (from * 0.15, to * 0.15);
+    let middle = Point::from((entry.coords + exit.coords) * 0.35);
+    vec![from, entry, middle, exit, to]
+}
+
+/// Whether no bend is too sharp for a junction.
+fn drivable(points: &[Point]) -> bool {
+    let route = Route::<POINTS>::new(points.iter().copied());
+    route.is_ok_and(|route| {
+        let mut builder = Junction::<1, POINTS>::builder();
+        builder.path(&route, Class::Car, Footprint::PAPER).is_ok()
+    })
 }

@@ -11,8 +11,8 @@ mod stack;
 
 use cede_controller::policy::embedded;
 use cede_controller::policy::weights::Aligned;
-use cede_controller::{Approach, Decision, EnterError, Mlp, Policy};
-use cede_golden::{EGO, Golden, QUESTION, Seen, Site, answer, drive};
+use cede_controller::{Approach, Decision, Mlp, Policy};
+use cede_golden::{Golden, Junction, QUESTION, Question, Wrong, answer, approach};
 use cortex_m_rt::entry;
 use cortex_m_semihosting::debug;
 use counter::{Counter, Range};
@@ -66,7 +66,7 @@ fn run() -> Result<(), &'static str> {
     while let Some(golden) = Golden::next(&mut words) {
         tally
             .drive(&policy, &golden)
-            .ok_or("routes that are no junction")?;
+            .ok_or("a junction that is none")?;
     }
     tally.report();
     tally.verdict()
@@ -75,16 +75,20 @@ fn run() -> Result<(), &'static str> {
 impl Tally {
     fn drive(&mut self, policy: &Policy<'_>, golden: &Golden<'_>) -> Option<()> {
         stack::paint();
-        let site = site(golden)?;
+        let junction = junction(golden).ok()?;
         self.preparing = self.preparing.max(stack::touched());
-        self.decide(policy, golden, &site)
+        self.decide(policy, golden, &junction)
     }
 
     /// Not inlined, so that the approach has its place only when there is one.
     #[inline(never)]
-    fn decide(&mut self, policy: &Policy<'_>, golden: &Golden<'_>, site: &Site) -> Option<()> {
-        let mut approach = enter(policy, site);
-        let approach = approach.as_mut().ok()?;
+    fn decide(
+        &mut self,
+        policy: &Policy<'_>,
+        golden: &Golden<'_>,
+        junction: &Junction,
+    ) -> Option<()> {
+        let approach = &mut approach(policy, junction).ok()?;
         stack::paint();
         for step in golden.steps {
             let (question, expected) = step.split_first_chunk()?;
@@ -139,14 +143,8 @@ fn network(counter: &mut Counter, weights: &[u32]) -> Option<Range> {
 
 /// Not inlined, so that its frame is gone when a decision is made.
 #[inline(never)]
-fn site(golden: &Golden<'_>) -> Option<Site> {
-    golden.site()
-}
-
-/// Not inlined, for the same reason.
-#[inline(never)]
-fn enter<'j, 'w>(policy: &Policy<'w>, site: &'j Site) -> Result<Approach<'j, 'w>, EnterError> {
-    drive(policy).enter(site, EGO)
+fn junction(golden: &Golden<'_>) -> Result<Junction, Wrong> {
+    golden.junction()
 }
 
 /// Not inlined, so that the frame is the same for every step.
@@ -154,10 +152,11 @@ fn enter<'j, 'w>(policy: &Policy<'w>, site: &'j Site) -> Result<Approach<'j, 'w>
 fn decide(
     counter: &mut Counter,
     approach: &mut Approach<'_, '_>,
-    question: &[u32; QUESTION],
+    words: &[u32; QUESTION],
 ) -> (Decision, u32) {
-    let seen = Seen::read(question);
-    counter.count(|| approach.decide(seen.now, &seen.observation()))
+    let question = Question::new(words);
+    let observation = question.observation();
+    counter.count(|| approach.decide(question.now, &observation))
 }
 
 /// Faults on purpose, by feature, that the checks on the linked image must find.
