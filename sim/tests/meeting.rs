@@ -36,7 +36,11 @@ fn roads_past_the_records_change_nothing_on_them() {
                         && (z.other.from - zone.other.from).abs() < 1e-2
                         && z.is_lane() == zone.is_lane()
                 };
-                assert!(long.zones().any(|z| same(&z)), "{:?}: {zone:?}", encounter.id);
+                assert!(
+                    long.zones().any(|z| same(&z)),
+                    "{:?}: {zone:?}",
+                    encounter.id
+                );
             }
         }
     }

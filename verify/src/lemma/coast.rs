@@ -3,9 +3,7 @@
 
 use super::contract::any_contract;
 use super::formula::any;
-use super::motion::{
-    acceleration, moves, not_negative, number, seconds, speed, state, within,
-};
+use super::motion::{acceleration, moves, not_negative, number, seconds, speed, state, within};
 use super::term::Term;
 use super::{Claim, Lemma};
 use cede_controller::Real;

@@ -41,11 +41,10 @@ pub(super) fn lemmas() -> Vec<Lemma> {
                 "the brakes' latency forgotten",
                 &departs(
                     |contract, speed, previous, command| Departure {
-                        braking: Reach::start(speed + Term::of(contract.speed_error()))
-                            .at_most(
-                                Real::max(previous[1], command),
-                                Term::of(contract.shortest_period()),
-                            ),
+                        braking: Reach::start(speed + Term::of(contract.speed_error())).at_most(
+                            Real::max(previous[1], command),
+                            Term::of(contract.shortest_period()),
+                        ),
                         ..margin::departure(contract, speed, previous, command)
                     },
                     brakes,

@@ -31,7 +31,8 @@ pub(super) fn lemmas() -> Vec<Lemma> {
             (
                 "the command before forgotten",
                 &unlimited(|contract| {
-                    let late = Term::of(contract.ego().acceleration) * Term::of(contract.switching());
+                    let late =
+                        Term::of(contract.ego().acceleration) * Term::of(contract.switching());
                     margin::unlimited::<Term>(contract) + late
                 }),
             ),

@@ -265,8 +265,12 @@ pub(super) fn first(contract: &Contract) -> Term {
 /// limiter only holds it above.
 pub(super) fn limiter(contract: &Contract) -> Term {
     let ego = contract.ego();
-    let [error, period, late] =
-        [contract.speed_error(), contract.period(), contract.switching()].map(Term::of);
+    let [error, period, late] = [
+        contract.speed_error(),
+        contract.period(),
+        contract.switching(),
+    ]
+    .map(Term::of);
     let [most, acceleration, go] = [ego.max_speed, ego.acceleration, ego.go].map(Term::of);
     most - error - error - acceleration * late - go * period
 }

@@ -151,7 +151,10 @@ fn every_number_of_a_contract_has_its_name() {
     let mut of = numbers(&Contract::WORST_CASE);
     assert_eq!(value(other, &of), 8.0);
     let [period, latency] = [contract.shortest_period(), contract.switching()].map(Term::of);
-    assert_eq!((value(period, &of), value(latency, &of)), (0.1_f32.into(), 0.1_f32.into()));
+    assert_eq!(
+        (value(period, &of), value(latency, &of)),
+        (0.1_f32.into(), 0.1_f32.into())
+    );
     of.insert("ego.braking", 2.5);
     assert_eq!(value(ego, &of), 2.5);
 }

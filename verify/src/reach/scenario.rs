@@ -1,8 +1,6 @@
 //! Scenarios as a readable file.
 
-use cede_controller::{
-    Class, ConflictKind, Footprint, Junction, PathId, Point, RightOfWay, Route,
-};
+use cede_controller::{Class, ConflictKind, Footprint, Junction, PathId, Point, RightOfWay, Route};
 use cede_formats::property::{Right, Setting};
 use serde::Deserialize;
 

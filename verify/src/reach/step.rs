@@ -6,8 +6,8 @@ use super::states::{Moment, States};
 use crate::interval::Interval;
 use crate::policy::{Response, Subject};
 use cede_controller::Real;
-use cede_controller::kinematics::STEP;
 use cede_controller::RouteConflict;
+use cede_controller::kinematics::STEP;
 use cede_controller::shield::Contract;
 
 /// The sets of states from one box of initial states, one a step.

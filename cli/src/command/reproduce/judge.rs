@@ -11,9 +11,7 @@ use cede_controller::{Contract, Policy};
 use cede_data::{Dataset, Encounter};
 use cede_sim::driver::{Baseline, Cede, DriverFactory, PolicyAlone};
 use cede_sim::episode::Until;
-use cede_sim::evaluate::{
-    Drive, Evaluation, Label, Mode, Protocol, Selection, TableRow, evaluate,
-};
+use cede_sim::evaluate::{Drive, Evaluation, Label, Mode, Protocol, Selection, TableRow, evaluate};
 use cede_train::run::Algorithm;
 
 /// No shield, and one with each contract; by their names in the table.
