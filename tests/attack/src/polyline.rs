@@ -56,6 +56,12 @@ impl Polyline {
         &self.arc
     }
 
+    /// The direction of each segment.
+    #[must_use]
+    pub fn directions(&self) -> &[V2] {
+        &self.directions
+    }
+
     fn segment(&self, s: f64) -> usize {
         self.arc
             .partition_point(|&a| a <= s)
@@ -73,9 +79,10 @@ impl Polyline {
         }
     }
 
-    /// The place at `s` of a vehicle that turns steadily on its way through a kink instead of all at once.
+    /// The place at `s` of a vehicle that turns steadily on its way through a kink instead of all at once, if the kink's
+    /// cosine is at least `gentle`.
     #[must_use]
-    pub fn turning_place(&self, s: f64) -> Place {
+    pub fn turning_place(&self, s: f64, gentle: f64) -> Place {
         let i = self.segment(s);
         let here = Place {
             at: along(self.points[i], self.directions[i], s - self.arc[i]),
@@ -84,18 +91,18 @@ impl Polyline {
         let half = 0.5 * (self.arc[i + 1] - self.arc[i]);
         let into = s - self.arc[i];
         if into < half {
-            self.blended(here, i.checked_sub(1), into / TURNING.min(half))
+            self.blended(here, i.checked_sub(1), into / TURNING.min(half), gentle)
         } else {
             let next = Some(i + 1).filter(|&next| next < self.directions.len());
-            self.blended(here, next, (2.0 * half - into) / TURNING.min(half))
+            self.blended(here, next, (2.0 * half - into) / TURNING.min(half), gentle)
         }
     }
 
     /// Turned halfway to the segment `towards` where `away` from it is 0, not at all where it is 1.
-    fn blended(&self, here: Place, towards: Option<usize>, away: f64) -> Place {
-        match towards {
-            Some(other) if (0.0..1.0).contains(&away) => {
-                let mixed = along(here.to, self.directions[other], (1.0 - away) / (1.0 + away));
+    fn blended(&self, here: Place, towards: Option<usize>, away: f64, gentle: f64) -> Place {
+        match towards.map(|other| self.directions[other]) {
+            Some(other) if (0.0..1.0).contains(&away) && dot(here.to, other) >= gentle => {
+                let mixed = along(here.to, other, (1.0 - away) / (1.0 + away));
                 Place {
                     to: direction(mixed),
                     ..here
@@ -139,11 +146,12 @@ mod tests {
         assert_eq!(line.place(-1.0).at, [-1.0, 0.0]);
         assert_eq!(line.place(17.0).at, [10.0, 7.0]);
         let angle = |s: f64| {
-            let to = line.turning_place(s).to;
+            let to = line.turning_place(s, -0.5).to;
             to[1].atan2(to[0]).to_degrees()
         };
         assert!((angle(10.0 - 1e-9) - 45.0).abs() < 1e-3 && (angle(10.0) - 45.0).abs() < 1e-3);
         assert!(angle(9.5) == 0.0 && angle(9.9) > 0.0 && angle(10.1) < 90.0);
+        assert_eq!(line.turning_place(9.9, 0.5), line.place(9.9));
         assert!((line.project([9.0, 2.5]) - 12.5).abs() < 1e-12);
         assert!((line.sharpest().to_degrees() - 90.0).abs() < 1e-9);
     }

@@ -50,12 +50,7 @@ fn way(arms: &[Arm], from: usize, to: usize, users: Users, rng: &mut Rng) -> Opt
         .curve(exit, smooth(size.radius()))?
         .straight(LEAVING)
         .done();
-    Some(Way {
-        points,
-        kind,
-        size,
-        entry: from,
-    })
+    Some(Way::whole(points, kind, size, from))
 }
 
 /// `count` ways between random arms of `arms`, all out by the same one if `merging`.

@@ -23,12 +23,7 @@ fn bent(through: V2, angle: f64, curvature: f64, entry: usize, users: Users, rng
         .arc(2.0 * half, curvature, bend)
         .straight(LEAVING)
         .done();
-    Way {
-        points,
-        kind,
-        size,
-        entry,
-    }
+    Way::whole(points, kind, size, entry)
 }
 
 /// Ways that bend all along.
@@ -93,17 +88,12 @@ fn weave(base: f64, entry: usize, users: Users, rng: &mut Rng) -> Way {
         let sign = if i % 2 == 0 { 1.0 } else { -1.0 };
         pen = pen.arc(arc.abs(), sign * curvature, bend);
     }
-    Way {
-        points: pen.straight(LEAVING).done(),
-        kind,
-        size,
-        entry,
-    }
+    Way::whole(pen.straight(LEAVING).done(), kind, size, entry)
 }
 
 /// Ways with hairpins, some of them through the same ground twice.
 #[must_use]
-pub fn bends(count: usize, users: Users, rng: &mut Rng) -> Vec<Way> {
+pub fn winding(count: usize, users: Users, rng: &mut Rng) -> Vec<Way> {
     let way = |entry| {
         let kind = users.kind(rng);
         let size = kind.size(rng);
@@ -115,12 +105,7 @@ pub fn bends(count: usize, users: Users, rng: &mut Rng) -> Vec<Way> {
             let length = radius * rng.within(0.5, 2.8);
             pen = pen.arc(length, rng.sign() / radius, bend).straight(rng.within(1.0, 12.0));
         }
-        Way {
-            points: pen.straight(LEAVING).done(),
-            kind,
-            size,
-            entry,
-        }
+        Way::whole(pen.straight(LEAVING).done(), kind, size, entry)
     };
     (0..count).map(way).collect()
 }

@@ -1,11 +1,15 @@
 //! Random ways through an intersection: points only, nothing computed about them.
 
 mod arms;
+mod corners;
 mod free;
 mod pen;
+mod row;
 
 pub use arms::{crossroads, merge, star};
-pub use free::{bends, curves, lanes, near_parallel, weaving, with_bystanders};
+pub use corners::corners;
+pub use free::{curves, lanes, near_parallel, winding, weaving, with_bystanders};
+pub use row::row;
 
 use crate::plane::Size;
 use crate::rng::Rng;
@@ -52,6 +56,38 @@ pub struct Way {
     pub size: Size,
     /// Ways with the same number share their points up to where they part.
     pub entry: usize,
+    /// Its parts in junctions.
+    pub cuts: Vec<Cut>,
+}
+
+/// The part of a way that is a path of one junction: its points `from` to `to`, the last one not included.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cut {
+    /// Which junction.
+    pub junction: usize,
+    /// First point.
+    pub from: usize,
+    /// One past the last point.
+    pub to: usize,
+}
+
+impl Way {
+    /// The whole of `points` in the one junction that there is.
+    #[must_use]
+    pub fn whole(points: Vec<[f32; 2]>, kind: Kind, size: Size, entry: usize) -> Self {
+        let cut = Cut {
+            junction: 0,
+            from: 0,
+            to: points.len(),
+        };
+        Self {
+            points,
+            kind,
+            size,
+            entry,
+            cuts: vec![cut],
+        }
+    }
 }
 
 /// Whose ways a sketch has.

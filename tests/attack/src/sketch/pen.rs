@@ -29,6 +29,12 @@ impl Pen {
         self
     }
 
+    /// Turns on the spot by `angle` (rad), to the left if positive.
+    pub(super) fn turn(mut self, angle: f64) -> Self {
+        self.angle += angle;
+        self
+    }
+
     /// A circular arc of `length` m with this curvature (1/m, to the left if positive); no kink exceeds `bend`.
     pub(super) fn arc(mut self, length: f64, curvature: f64, bend: f64) -> Self {
         let steps = (length * curvature.abs() / bend).ceil().max(1.0);
