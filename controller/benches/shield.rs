@@ -2,8 +2,8 @@
 
 use cede_controller::policy::weights::Draft;
 use cede_controller::{
-    Contract, Controller, FeatureSet, Footprint, Mlp, Observation, Part, Path, Perspective, Point,
-    Policy, Route, Scene, Shield, Vehicle,
+    Contract, Controller, FeatureSet, Footprint, Mlp, Observation, Part, Perspective, Point,
+    Policy, Route, Scene, ScenePath as Path, Shield, Vehicle,
 };
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;

@@ -5,8 +5,8 @@
 use cede_controller::kinematics::{STEP, State, advance};
 use cede_controller::policy::embedded;
 use cede_controller::{
-    Contract, Controller, Footprint, Observation, Part, Path, Point, Policy, RightOfWay, Route,
-    Scene, Vehicle,
+    Contract, Controller, Footprint, Observation, Part, Point, Policy, RightOfWay, Route, Scene,
+    ScenePath as Path, Vehicle,
 };
 use std::error::Error;
 

@@ -4,7 +4,7 @@
 //!
 //! ```
 //! use cede_controller::dangerous::Rules;
-//! use cede_controller::{Contract, Plan, Shield};
+//! use cede_controller::{Contract, EnterError, Junction, PathId, Plan, Shield};
 //!
 //! /// Forgets that a command of the plan was carried out.
 //! struct StalePlan;
@@ -13,11 +13,18 @@
 //!         plan
 //!     }
 //! }
-//! let broken = Shield::<8, StalePlan>::with_rules(Contract::WORST_CASE);
-//! # assert_eq!(broken.plan(), None);
+//! fn broken(junction: &Junction<4, 64>, path: PathId) -> Result<Shield<'_, 8, StalePlan>, EnterError> {
+//!     Shield::with_rules(Contract::WORST_CASE, junction, path)
+//! }
 //! ```
 
 pub use crate::shield::rules::{Rules, Sound};
+
+/// The rule of precedence as it flies, for a model checker: what one shield remembers of two vehicles.
+pub mod precedence {
+    pub use crate::shield::precedence::PairMemory;
+    pub use crate::shield::waiting::{Arrival, Presence, RestState, Sighting};
+}
 
 use crate::shield::{Contract, ContractBuilder};
 

@@ -1,6 +1,7 @@
 //! What the controller decides, and why.
 
-use crate::observation::Fault;
+use crate::fault::Fault;
+use crate::shield::{Contract, Plan};
 use core::fmt;
 
 /// The ego's acceleration for the period that begins, and why it is what it is.
@@ -19,8 +20,14 @@ pub struct Decision {
     /// Metres to spare of the best plan that follows; negative if no plan is safe. Not a number is
     /// never; without an observation that can be trusted it is 0.
     pub margin: f32,
+    /// The plan that is carried out if nothing better is found; none is no guarantee.
+    pub plan: Option<Plan>,
     /// A motion since the last decision that exceeds the contract's bounds.
     pub breach: Option<Breach>,
+    /// What is wrong with the inputs, if something is. A track with a fault counts as not seen.
+    pub fault: Option<Fault>,
+    /// Number of a track that matters and for which there is no room: the ego stays out of its zones.
+    pub unwatched: Option<u16>,
     /// What the policy thinks of the other that restricts the ego most, if it was asked.
     pub prediction: Option<Prediction>,
 }
@@ -31,8 +38,8 @@ pub struct Decision {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Prediction {
-    /// Number of the other.
-    pub other: u8,
+    /// Track number of the other.
+    pub other: u16,
     /// The ego's social value orientation towards it in rad, in [0, π/2].
     pub svo: f32,
     /// The acceleration (m/s²) that is expected of it, within ± 3.
@@ -49,10 +56,10 @@ pub enum Cause {
     Policy,
     /// The shield: the proposal is not.
     Shielded(Intervention),
-    /// Neither of them: the inputs cannot be trusted, or no plan is safe. The ego carries on with the plan that was
-    /// verified last. Without one it brakes; if it stands in crossing zones whose others are all outside, it
-    /// accelerates to leave them. If only the proposal is at fault, a plan that is verified afresh comes before
-    /// all of these.
+    /// Neither of them. [`Fault::NoPlan`], before everything else, if no plan is safe: the ego brakes; if it stands in
+    /// crossing zones whose others are all outside, and nobody stands in its way, it accelerates to leave them. Another
+    /// fault if the ego's own state or the call's time cannot be trusted: it carries on with the plan that was verified
+    /// last. [`Fault::Proposal`] if only the proposal is at fault: it counted as braking, or as the limit on its side.
     Fallback(Fault),
 }
 
@@ -88,8 +95,8 @@ pub enum Action {
 pub enum Reason {
     /// The ego could not clear the zone before the other's earliest arrival.
     Arrival {
-        /// Number of the other.
-        other: u8,
+        /// Track number of the other.
+        other: u16,
         /// The other's earliest arrival, s from now.
         arrives: f32,
         /// When the ego would have cleared the zone, s from now.
@@ -97,8 +104,8 @@ pub enum Reason {
     },
     /// The ego would enter the other's lane without the gap in which the other can stop.
     Entry {
-        /// Number of the other.
-        other: u8,
+        /// Track number of the other.
+        other: u16,
         /// The gap on entry in m; negative if the other is ahead by then.
         gap: f32,
         /// The gap that is needed in m.
@@ -106,8 +113,8 @@ pub enum Reason {
     },
     /// The ego could not stop short of the other's zone, or behind the other in its lane.
     Stop {
-        /// Number of the other.
-        other: u8,
+        /// Track number of the other.
+        other: u16,
         /// Metres to where it must be at rest; negative if it is past that.
         available: f32,
         /// Metres that it needs.
@@ -115,7 +122,7 @@ pub enum Reason {
     },
 }
 
-/// Whose motion exceeds the contract's bounds.
+/// Whose motion since the last decision exceeds the contract's bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -123,19 +130,43 @@ pub enum Reason {
 pub enum Breach {
     /// The ego deviated from the command.
     Ego,
-    /// This other exceeds the contract's motion bounds.
-    Other(u8),
+    /// The track with this number exceeds the contract's motion bounds.
+    Other(u16),
+}
+
+impl Decision {
+    /// Before anything was decided: braking.
+    pub(crate) const fn none(contract: &Contract) -> Self {
+        Self {
+            acceleration: -contract.ego().braking,
+            cause: Cause::Fallback(Fault::NoPlan),
+            margin: 0.0,
+            plan: None,
+            breach: None,
+            fault: None,
+            unwatched: None,
+            prediction: None,
+        }
+    }
 }
 
 impl fmt::Display for Decision {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.cause.fmt(f)?;
         match self.breach {
-            None => Ok(()),
-            Some(Breach::Ego) => f.write_str("; the ego deviated from the command"),
+            None => {}
+            Some(Breach::Ego) => f.write_str("; the ego deviated from the command")?,
             Some(Breach::Other(other)) => {
-                write!(f, "; other {other} exceeds the contract's motion bounds")
+                write!(f, "; other {other} exceeds the contract's motion bounds")?;
             }
+        }
+        match self.fault {
+            Some(fault) if self.cause != Cause::Fallback(fault) => write!(f, "; {fault}")?,
+            _ => {}
+        }
+        match self.unwatched {
+            Some(other) => write!(f, "; no room to watch other {other}"),
+            None => Ok(()),
         }
     }
 }

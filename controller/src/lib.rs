@@ -8,15 +8,16 @@
 //!
 //! # On an ECU
 //!
-//! At start-up, [`Policy::new`] checks the weights where they lie in flash. For each intersection,
-//! [`Scene::new`] prepares the geometry ([`Scene::gather`], where memory is short). Every 100 ms,
-//! [`Controller::decide`] turns what is sensed into an acceleration, and says why. What must hold for its
+//! At start-up, [`Policy::new`] checks the weights where they lie in flash, and [`Drive`] keeps what drives at every
+//! intersection. A [`Junction`] is its paths: its geometry is computed once. [`Drive::enter`] begins an [`Approach`],
+//! which lives until the ego has left that junction. Every 100 ms,
+//! [`Approach::decide`] turns what is sensed into an acceleration, and says why. What must hold for its
 //! guarantee is in the [`Contract`]: put your vehicle's numbers there.
 //!
 #![cfg_attr(feature = "embedded-policy", doc = "```")]
 #![cfg_attr(not(feature = "embedded-policy"), doc = "```ignore")]
 //! use cede_controller::{
-//!     Cause, Contract, Controller, Footprint, Observation, Part, Path, Point, Policy, Route, Scene, Vehicle,
+//!     Cause, Class, Contract, Drive, Footprint, Instant, Junction, Observation, Part, Point, Policy, Route, Track, Vehicle,
 //! };
 //!
 //! // From the map, in metres: the ego turns left, the oncoming vehicle goes straight on.
@@ -24,26 +25,32 @@
 //!     [(-40.0, -2.0), (-6.0, -2.0), (0.0, 0.0), (2.0, 6.0), (2.0, 40.0)].map(|(x, y)| Point::new(x, y)),
 //! )?;
 //! let theirs = Route::<8>::new([(40.0, 2.0), (-40.0, 2.0)].map(|(x, y)| Point::new(x, y)))?;
-//! let path = |route| Path { route, footprint: Footprint { length: 4.6, width: 1.9 } };
-//! let scene = Scene::<8>::new(path(&mine), &[path(&theirs)])?;
+//! let car = Footprint { length: 4.6, width: 1.9 };
+//! let mut builder = Junction::<2, 16>::builder();
+//! let left = builder.path(&mine, Class::Car, car)?;
+//! let oncoming = builder.path(&theirs, Class::Car, car)?;
+//! builder.right_of_way(oncoming, left)?;
+//! let junction = builder.build()?;
 //!
-//! // The policy that ships, or `include_weights!("own.cede")`; and this vehicle's brakes.
+//! // Once: the policy that ships, or `include_weights!("own.cede")`; and this vehicle's brakes.
 //! let policy = Policy::new(cede_controller::policy::embedded::words())?;
 //! let contract = Contract::builder().ego_braking(4.0).build()?;
-//! let mut controller = Controller::<8>::new(policy, contract, Part::Left);
+//! let drive = Drive::new(policy, contract, Part::Left);
 //!
-//! // Every 100 ms, from localisation and tracking: arc length and speed along the route, and the pose.
+//! // At each intersection; every 100 ms from localisation and tracking: arc length and speed along the path, and the pose.
+//! let mut approach = drive.enter(&junction, left)?;
 //! let sensed = |route: &Route<8>, s: f32, speed: f32| Vehicle { s, speed, pose: route.pose(s) };
-//! let mut others = [None; 8];
-//! others[0] = Some(sensed(&theirs, 20.0, 8.0)); // the order is that of the scene
-//! let seen = Observation { ego: sensed(&mine, 15.0, 6.0), others };
-//! let decision = controller.decide(&scene, &seen);
+//! let tracks = [Track::on(17, oncoming, sensed(&theirs, 20.0, 8.0))]; // in any order; 17 is tracking's number
+//! let seen = Observation { ego: sensed(&mine, 15.0, 6.0), tracks: &tracks };
+//! let now = Instant::from_millis(1_000);
+//! approach.ready(now, &seen)?; // before control is handed over
+//! let decision = approach.decide(now, &seen);
 //!
 //! let command = decision.acceleration; // m/s², to the longitudinal actuator
 //! assert!((-4.0..=3.0).contains(&command));
 //! match decision.cause {
 //!     Cause::Policy => {}
-//!     // The decision displays as a line for the log: "shielded: other 0 may arrive in 1.3 s, …".
+//!     // The decision displays as a line for the log: "shielded: other 17 may arrive in 1.3 s, …".
 //!     _ => { /* log(format_args!("{decision}")) */ }
 //! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -77,10 +84,12 @@
 #[cfg(test)]
 extern crate std;
 
-mod controller;
+mod approach;
 pub mod dangerous;
 mod decision;
+mod fault;
 pub mod geometry;
+mod instant;
 pub mod junction;
 pub mod kinematics;
 mod observation;
@@ -89,14 +98,16 @@ mod real;
 pub mod separation;
 pub mod shield;
 
-pub use controller::{Controller, FREE};
+pub use approach::{Approach, Drive, FREE};
 pub use decision::{Action, Breach, Cause, Decision, Intervention, Prediction, Reason};
+pub use fault::{Fault, Field, InputFault, Subject};
 pub use geometry::{Footprint, Point, Pose, UnitVector, Vector};
+pub use instant::Instant;
 pub use junction::{
-    CONFLICT_RADIUS, ConflictKind, MAX_OTHERS, Path, RightOfWay, Route, RouteConflict, RouteError,
-    Scene, SceneError, Span, Zone,
+    CONFLICT_RADIUS, Class, ConflictKind, Junction, JunctionBuilder, JunctionError, MAX_OTHERS,
+    Path, PathId, Polyline, RightOfWay, Route, RouteConflict, RouteError, Span, Way, Zone,
 };
-pub use observation::{Fault, Observation, Vehicle};
+pub use observation::{Candidate, MAX_CANDIDATES, Observation, Track, Vehicle};
 pub use policy::{
     Crosser, FeatureSet, Leader, Mlp, NearbyVehicle, Pair, Part, Perspective, Policy,
     TrafficContext, VehicleState, Weights, WeightsError,
@@ -104,5 +115,6 @@ pub use policy::{
 pub use real::{Elementary, Real};
 pub use separation::OrientedBox;
 pub use shield::{
-    Contract, ContractBuilder, ContractError, Ego, Follower, Other, Plan, Precedence, Shield,
+    Bounds, Contract, ContractBuilder, ContractError, Ego, EnterError, Follower, NotReady, Other,
+    Plan, Precedence, Shield,
 };

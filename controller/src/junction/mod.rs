@@ -1,11 +1,26 @@
-//! Where vehicles go, and where they can touch: routes, the zones of two routes, the scene of all of them.
+//! Where vehicles go, and where they can touch: routes, the zones of two routes, the junction of all of them.
 
+mod builder;
 pub(crate) mod conflict;
+mod error;
+mod meeting;
+mod path;
+mod polyline;
+mod prepared;
 pub(crate) mod route;
-pub(crate) mod scene;
+mod way;
 pub mod zone;
 
-pub use conflict::{ConflictKind, RightOfWay};
+pub use builder::{JunctionBuilder, MAX_TOLERANCE};
+pub use conflict::{ConflictKind, RightOfWay, RouteConflict};
+pub use error::JunctionError;
+pub use meeting::CONFLICT_RADIUS;
+pub use path::{Class, MAX_FOOTPRINT, MAX_PATH_LENGTH, Path, PathId};
+pub use polyline::Polyline;
+pub use prepared::Junction;
 pub use route::{Route, RouteError};
-pub use scene::{CONFLICT_RADIUS, MAX_OTHERS, Path, RouteConflict, Scene, SceneError};
+pub use way::Way;
 pub use zone::{Span, Zone};
+
+/// Most others that a shield watches at once.
+pub const MAX_OTHERS: usize = 8;

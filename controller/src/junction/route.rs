@@ -1,6 +1,7 @@
 //! A vehicle's path through the intersection: a polyline of fixed capacity, addressed by arc length.
 
-use crate::geometry::{Point, Pose, distance, unit};
+use crate::geometry::{Point, Pose, distance};
+use crate::junction::polyline::Polyline;
 use heapless::Vec;
 
 /// A polyline of at most `P` points, addressed by arc length `s` in metres from its first point.
@@ -85,10 +86,37 @@ impl<const P: usize> Route<P> {
         self.arc.push(s).map_err(|_| RouteError::TooManyPoints)
     }
 
+    /// The points and arc lengths, without the capacity in the type.
+    #[must_use]
+    pub fn polyline(&self) -> Polyline<'_> {
+        Polyline::new(&self.points, &self.arc)
+    }
+
+    /// The same route, straight on by `before` metres at its start and by `after` metres at its end.
+    ///
+    /// It has as many points: the first and the last one are moved. Arc lengths grow by `before`.
+    /// Cost: O(points).
+    ///
+    /// # Errors
+    /// [`RouteError::OutOfRange`] if `before` or `after` is negative or not a number, or if an end
+    /// would be more than [`Route::MAX_COORDINATE`] from the origin.
+    pub fn extended(&self, before: f32, after: f32) -> Result<Self, RouteError> {
+        if !(before >= 0.0 && after >= 0.0) {
+            return Err(RouteError::OutOfRange);
+        }
+        let last = self.points.len().saturating_sub(1);
+        let ends = [-before, self.length() + after].map(|s| self.pose(s).position);
+        Self::new(self.points.iter().enumerate().map(|(i, &point)| match i {
+            0 => ends[0],
+            _ if i == last => ends[1],
+            _ => point,
+        }))
+    }
+
     /// Length in metres; always positive.
     #[must_use]
     pub fn length(&self) -> f32 {
-        self.arc.last().copied().unwrap_or(0.0)
+        self.polyline().length()
     }
 
     /// The points of the polyline, at least two.
@@ -103,57 +131,23 @@ impl<const P: usize> Route<P> {
         &self.arc
     }
 
-    /// The pose at arc length `s` (m), straight on beyond both ends.
-    ///
-    /// Cost: O(log points).
+    /// The pose at arc length `s` (m): [`Polyline::pose`].
     #[must_use]
     pub fn pose(&self, s: f32) -> Pose {
-        let after = self.arc.partition_point(|&a| a <= s);
-        let i = after.clamp(1, self.points.len().max(2) - 1);
-        match (
-            self.points.get(i - 1),
-            self.points.get(i),
-            self.arc.get(i - 1),
-            self.arc.get(i),
-        ) {
-            (Some(&a), Some(&b), Some(&sa), Some(&sb)) => {
-                let direction = (b - a) * (1.0 / (sb - sa));
-                Pose {
-                    position: a + direction * (s - sa),
-                    direction: unit(direction.x, direction.y),
-                }
-            }
-            // Unreachable: `new` keeps two points at least.
-            _ => Pose {
-                position: Point::origin(),
-                direction: unit(1.0, 0.0),
-            },
-        }
+        self.polyline().pose(s)
     }
 
-    /// Arc length (m) of the point of the polyline nearest to `point`, in [0, length].
-    ///
-    /// Cost: O(points).
+    /// Arc length (m) of the point of the polyline nearest to `point`: [`Polyline::project`].
     #[must_use]
     pub fn project(&self, point: Point) -> f32 {
-        let mut best = (f32::INFINITY, 0.0);
-        let ends = self.points.iter().zip(self.points.iter().skip(1));
-        let arcs = self.arc.iter().zip(self.arc.iter().skip(1));
-        for ((&a, &b), (&sa, &sb)) in ends.zip(arcs) {
-            let direction = (b - a) * (1.0 / (sb - sa));
-            let along = (point - a).dot(&direction).clamp(0.0, sb - sa);
-            let away = distance(&(a + direction * along), &point);
-            if away < best.0 {
-                best = (away, sa + along);
-            }
-        }
-        best.1
+        self.polyline().project(point)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::unit;
 
     fn corner() -> Route<4> {
         Route::new([
@@ -180,6 +174,20 @@ mod tests {
         let route = corner();
         for s in [0.0, 3.0, 10.0, 14.5, 15.0] {
             assert!((route.project(route.pose(s).position) - s).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn an_extended_route_goes_straight_on_at_both_ends() {
+        let route = corner().extended(2.0, 3.0).unwrap();
+        assert_eq!(route.points().len(), 3);
+        assert_eq!(route.length(), 20.0);
+        assert_eq!(route.pose(0.0).position, Point::new(-2.0, 0.0));
+        assert_eq!(route.pose(20.0).position, Point::new(10.0, 8.0));
+        assert_eq!(corner().extended(0.0, 0.0).unwrap(), corner());
+        for (before, after) in [(-1.0, 0.0), (0.0, f32::NAN), (9000.0, 0.0)] {
+            let refused = corner().extended(before, after);
+            assert_eq!(refused.unwrap_err(), RouteError::OutOfRange);
         }
     }
 

@@ -1,6 +1,6 @@
 //! The accelerations among which the shield chooses.
 
-use super::contract::Ego;
+use super::contract::{Contract, Ego};
 use crate::real::Real;
 
 /// Accelerations of the grid, from full braking to full acceleration.
@@ -13,14 +13,37 @@ pub fn grid<R: Real>(ego: &Ego, i: u8) -> R {
     R::of(share) * R::of(ego.acceleration) - R::of(1.0 - share) * R::of(ego.braking)
 }
 
-/// What may be commanded of `acceleration` (m/s²) at `speed` (m/s); braking, if it is not a number.
+/// The hardest acceleration (m/s²) that may be commanded at `speed` (m/s, as sensed) while one of at most `in_effect`
+/// (m/s²) still acts: the ego does not become faster than `ego.max_speed`, and if it is already, no faster than it is.
 #[must_use]
-pub fn allowed(ego: &Ego, speed: f32, acceleration: f32) -> f32 {
-    let most = if speed < ego.max_speed {
-        ego.acceleration
+pub fn most(contract: &Contract, speed: f32, in_effect: f32) -> f32 {
+    let ego = contract.ego();
+    let (period, late) = (contract.period(), contract.switching());
+    let room = ego.max_speed - speed - contract.speed_error();
+    let carried = if in_effect > 0.0 {
+        in_effect * late
     } else {
         0.0
     };
+    let [after, throughout] = [(room - carried) / period, room / (period + late)];
+    let most = if after < throughout {
+        after
+    } else {
+        throughout
+    };
+    // In this order, what is not a number becomes 0.
+    if most >= ego.acceleration {
+        ego.acceleration
+    } else if most > 0.0 {
+        most
+    } else {
+        0.0
+    }
+}
+
+/// What may be commanded of `acceleration` (m/s²) if `most` (m/s²) is the hardest; braking, if it is not a number.
+#[must_use]
+pub fn allowed(ego: &Ego, most: f32, acceleration: f32) -> f32 {
     if acceleration >= most {
         most
     } else if acceleration >= -ego.braking {
@@ -34,13 +57,13 @@ pub fn allowed(ego: &Ego, speed: f32, acceleration: f32) -> f32 {
 /// `check` says of it; of two, the lower.
 pub(super) fn nearest<V>(
     ego: &Ego,
-    speed: f32,
+    most: f32,
     wanted: f32,
     check: impl Fn(f32) -> Option<V>,
 ) -> Option<(f32, V)> {
     let mut found: Option<(f32, V)> = None;
     for i in 0..GRID {
-        let candidate = allowed(ego, speed, grid(ego, i));
+        let candidate = allowed(ego, most, grid(ego, i));
         let distance = |acceleration: f32| (acceleration - wanted).abs();
         if found
             .as_ref()

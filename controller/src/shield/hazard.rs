@@ -1,25 +1,35 @@
 //! The conflict zones ahead, as distances from where the ego is now.
 
 use super::contract::Contract;
-use super::precedence::Claims;
+use super::margin;
+use super::precedence::has;
 use super::reach::Reach;
 use super::rules::Rules;
-use crate::junction::conflict::RightOfWay;
-use crate::junction::scene::{MAX_OTHERS, Scene};
+use super::tracks::{Closed, News, Other, Tracks};
 use crate::junction::zone::{FAR, MAX_ZONES, Zone};
-use crate::observation::{Observation, Vehicle};
+use crate::junction::{MAX_OTHERS, RightOfWay, Way};
+use crate::observation::Vehicle;
 use crate::real::Real;
 use heapless::Vec;
 
-const CAPACITY: usize = MAX_OTHERS * MAX_ZONES;
+/// Every zone of every other, and what is closed.
+const CAPACITY: usize = MAX_OTHERS * MAX_ZONES + 1;
 
 /// A zone that the ego has not cleared and the other has not left.
 ///
 /// All distances are metres from where the ego is, sensing errors included on the safe side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Hazard {
-    /// Number of the other.
-    pub other: u8,
+    /// Track number of the other.
+    pub other: u16,
+    /// Which of the tracks that is.
+    pub place: u8,
+    /// Number of the zone.
+    pub zone: u8,
+    /// The plan that is remembered was not verified against it.
+    pub suspect: bool,
+    /// The other has the right of way over the ego.
+    pub yields: bool,
     /// Having gone so far, the ego has certainly cleared the zone, and sees it.
     pub target: f32,
     /// The ego must come to rest within this distance unless it clears the zone in time.
@@ -35,7 +45,7 @@ pub(crate) struct Hazard {
 pub(crate) enum Passage {
     /// Before the other arrives at its zone.
     Before {
-        /// Metres, at least, from the other to its zone; negative if it is in it.
+        /// Metres, at least, from the other to its zone; negative if it may be in it.
         distance: f32,
         /// The other's speed, at most, in m/s.
         speed: f32,
@@ -47,7 +57,7 @@ pub(crate) enum Passage {
         /// The other's speed, at most, in m/s.
         speed: f32,
     },
-    /// Not as long as the other is where it is: the ego is behind it in one lane, or meets it head-on.
+    /// Not as long as the other is where it is: the ego is behind it in one lane.
     Never,
 }
 
@@ -63,55 +73,57 @@ impl Hazards {
         Self { sorted: Vec::new() }
     }
 
-    /// Adds the hazards of what is seen, but for those that the rule of precedence takes away. In place,
+    /// Adds the hazards of everybody who matters, but for those that the rule of precedence takes away. In place,
     /// because they are the largest thing on the stack.
     ///
-    /// Cost: O(zones²) for the sorting, at most 24².
+    /// Cost: O(zones²) for the sorting, at most 25².
     pub(crate) fn add<const N: usize, R: Rules>(
         &mut self,
         contract: &Contract,
-        scene: &Scene<N>,
-        seen: &Observation<N>,
-        claims: Claims,
+        way: Way<'_>,
+        (ego, tracks): (&Vehicle, &Tracks<N>),
+        closed: Option<Closed>,
     ) {
         // From where the first zone that precedence opens begins to where the last one ends.
         let mut open = [FAR, -FAR];
-        let pairs = scene.conflicts().iter().zip(seen.others.iter());
-        for (number, (conflict, other)) in (0_u8..).zip(pairs) {
-            let Some(other) = other else { continue };
+        for (place, other) in (0_u8..).zip(tracks.iter()) {
+            let Some(conflict) = way.conflict(other.path) else {
+                continue;
+            };
             for (index, zone) in (0_u8..).zip(conflict.zones()) {
-                if let Some(hazard) = hazard::<R>(contract, zone, &seen.ego, other) {
-                    let vehicles = (&seen.ego, other);
-                    if claims.has(number, index)
-                        && granted(contract, hazard.passage, zone, vehicles)
-                    {
-                        let entry = zone.ego.from - seen.ego.s - contract.position_error;
-                        open = [Real::min(open[0], entry), Real::max(open[1], hazard.target)];
-                        continue;
-                    }
-                    self.insert::<R>(Hazard {
-                        other: number,
-                        ..hazard
-                    });
+                let Some(hazard) = hazard::<R>(contract, (index, zone), ego, other) else {
+                    continue;
+                };
+                if has(other.claims, index) && granted(contract, hazard.passage, zone, (ego, other))
+                {
+                    let entry = zone.ego.from - ego.s - contract.position_error;
+                    open = [Real::min(open[0], entry), Real::max(open[1], hazard.target)];
+                    continue;
                 }
+                self.insert::<R>(Hazard {
+                    place,
+                    yields: conflict.right_of_way == RightOfWay::Other,
+                    ..hazard
+                });
             }
         }
         if open[0] >= 0.0 {
-            self.keep_clear(scene, open);
+            self.keep_clear(open);
+        }
+        if let Some(closed) = closed {
+            self.insert::<R>(Hazard::closed(contract, ego, closed));
         }
         self.look_beyond();
     }
 
     /// In zones that precedence opens, the ego waits only for those who have the right of way. Whoever it holds up there
-    /// may hold up others: if all waited so, each in the way of the next, their rights would go round in a circle.
+    /// may hold up others: if all waited so, each in the way of the next, their rights would form a cycle.
     ///
     /// It may still come to rest there behind those who share its lane.
-    fn keep_clear<const N: usize>(&mut self, scene: &Scene<N>, [from, to]: [f32; 2]) {
+    fn keep_clear(&mut self, [from, to]: [f32; 2]) {
         for hazard in &mut self.sorted {
-            let conflict = scene.conflicts().get(usize::from(hazard.other));
-            let yields = conflict.is_some_and(|m| m.right_of_way == RightOfWay::Other);
             let crosses = matches!(hazard.passage, Passage::Before { .. });
-            if crosses && !yields && (from..to).contains(&hazard.limit) {
+            if crosses && !hazard.yields && (from..to).contains(&hazard.limit) {
                 hazard.limit = from;
             }
         }
@@ -129,7 +141,7 @@ impl Hazards {
     }
 
     fn insert<R: Rules>(&mut self, hazard: Hazard) {
-        // 8 others of 3 zones: `Scene` and `MAX_ZONES` see to it that there are no more.
+        // 8 others of 3 zones and what is closed: `Shield` and `MAX_ZONES` see to it that there are no more.
         let _ = self.sorted.push(hazard);
         for i in (1..self.sorted.len()).rev() {
             if let Some([before, after]) = self.sorted.get_mut(i - 1..=i)
@@ -149,65 +161,108 @@ impl Hazards {
     }
 }
 
+impl Hazard {
+    /// Zones that nobody watches.
+    fn closed(contract: &Contract, ego: &Vehicle, closed: Closed) -> Self {
+        Self {
+            other: closed.number,
+            place: u8::MAX,
+            zone: u8::MAX,
+            suspect: false,
+            yields: false,
+            target: FAR,
+            limit: closed.from - ego.s - contract.position_error,
+            limit_beyond: FAR,
+            passage: Passage::Never,
+        }
+    }
+}
+
 /// The hazard of one zone, if it is one.
 fn hazard<R: Rules>(
     contract: &Contract,
-    zone: &Zone,
+    (index, zone): (u8, &Zone),
     ego: &Vehicle,
-    other: &Vehicle,
+    other: &Other,
 ) -> Option<Hazard> {
     let error = contract.position_error;
-    if ego.s - error >= zone.ego.to || R::left(zone, other.s - error) {
+    let bounds = other.bounds;
+    if ego.s - error >= zone.ego.to || R::left(zone, bounds.s.from) {
         return None;
     }
     let stop = zone.ego.from - ego.s - error;
+    let speed = bounds.speed.to;
     let crossing = Hazard {
-        other: 0,
+        other: other.number,
+        place: 0,
+        zone: index,
+        suspect: other.news != News::None,
+        yields: false,
         // The ego is then past the zone by twice the error, so that it will be seen to be.
         target: R::cleared_at(zone) - ego.s + 3.0 * error,
         limit: stop,
         limit_beyond: FAR,
         passage: Passage::Before {
-            distance: zone.other.from - other.s - error,
-            speed: other.speed + contract.speed_error,
+            distance: zone.other.from - bounds.s.to,
+            speed,
         },
     };
     if !zone.is_lane() {
         return Some(crossing);
     }
-    let lead = ego.s - other.s;
-    if ego.s - error >= zone.ego.from && lead >= zone.middle() {
+    if other.is_settled(index) {
         // The ego is ahead in the lane: the other is the one who has to keep its distance.
         return None;
     }
-    let behind = behind::<R>(contract, zone.lead.from - lead - 2.0 * error, other);
-    Some(if behind > stop {
-        Hazard {
-            target: FAR,
-            limit: behind,
-            passage: Passage::Never,
-            ..crossing
-        }
-    } else {
-        Hazard {
-            target: zone.ego.from - ego.s + 3.0 * error,
-            passage: Passage::Ahead {
-                gap: zone.ego.from - other.s - error - zone.lead.to,
-                speed: other.speed + contract.speed_error,
-            },
-            ..crossing
-        }
-    })
+    let behind = behind::<R>(contract, zone, ego, other);
+    Some(
+        if !is_ahead::<R>(contract, zone, ego, other) && behind > stop {
+            Hazard {
+                target: FAR,
+                limit: behind,
+                passage: Passage::Never,
+                ..crossing
+            }
+        } else {
+            Hazard {
+                target: zone.ego.from - ego.s + 3.0 * error,
+                passage: Passage::Ahead {
+                    gap: gap_ahead(contract, zone, ego, other),
+                    speed,
+                },
+                ..crossing
+            }
+        },
+    )
 }
 
-/// How far the ego may go and still be at rest behind an other that is `gap` ahead and brakes as hard as it can.
-fn behind<R: Rules>(contract: &Contract, gap: f32, other: &Vehicle) -> f32 {
+/// Whether the ego is certainly in the lane, and ahead of the other in it.
+///
+/// Two vehicles in a lane do not overlap: one that is not behind by the whole band is ahead.
+pub(super) fn is_ahead<R: Rules>(
+    contract: &Contract,
+    zone: &Zone,
+    ego: &Vehicle,
+    other: &Other,
+) -> bool {
+    let least = ego.s - contract.position_error;
+    least >= zone.ego.from && R::is_ahead(zone, least - other.bounds.s.to)
+}
+
+/// The gap (m), at least, from the other to the ego ahead of it once that has entered the lane.
+pub(super) fn gap_ahead(contract: &Contract, zone: &Zone, ego: &Vehicle, other: &Other) -> f32 {
+    let place = Real::max(zone.ego.from, ego.s - contract.position_error);
+    place - other.bounds.s.to - zone.lead.to
+}
+
+/// How far (m) the ego may go and still be at rest behind an other that is ahead and brakes as hard as it can.
+fn behind<R: Rules>(contract: &Contract, zone: &Zone, ego: &Vehicle, other: &Other) -> f32 {
+    let gap = zone.lead.from - (ego.s + contract.position_error - other.bounds.s.from);
     if gap < 0.0 {
         // Not behind it at all.
         return gap;
     }
-    let speed = other.speed - contract.speed_error;
-    gap + R::earliest_rest(contract, if speed > 0.0 { speed } else { 0.0 })
+    gap + R::earliest_rest(contract, other.bounds.speed.from)
 }
 
 /// Whether a zone in which the ego has precedence is no hazard: the other can still stop before it, and
@@ -219,21 +274,41 @@ pub(super) fn granted(
     contract: &Contract,
     passage: Passage,
     zone: &Zone,
-    (ego, other): (&Vehicle, &Vehicle),
+    (ego, other): (&Vehicle, &Other),
 ) -> bool {
     let Some(rule) = contract.precedence else {
         return false;
     };
-    let error = contract.position_error;
     let settled = match passage {
         Passage::Before { .. } => true,
-        Passage::Ahead { .. } => ego.s - error - zone.other.from > zone.lead.from,
+        Passage::Ahead { .. } => ego.s - contract.position_error - zone.other.from > zone.lead.from,
         Passage::Never => false,
     };
-    let speed = other.speed + contract.speed_error;
-    let seen = Reach {
-        distance: other.s + error,
-        speed,
+    let farthest = Reach {
+        distance: other.bounds.s.to,
+        speed: other.bounds.speed.to,
     };
-    settled && zone.other.from >= seen.rest(rule.braking)
+    settled && zone.other.from >= farthest.rest(rule.braking)
+}
+
+/// Notes for each lane that the ego shares with `other` whether it is ahead there, and the other keeps its distance
+/// from now on: the plan in force counted on it, or the gap is enough, or it was so when the other appeared.
+pub(super) fn settle<'z, R: Rules>(
+    contract: &Contract,
+    zones: impl Iterator<Item = &'z Zone>,
+    ego: &Vehicle,
+    other: &mut Other,
+) {
+    let appeared = other.news == News::Appeared;
+    for (index, zone) in (0_u8..).zip(zones) {
+        if !zone.is_lane() || !is_ahead::<R>(contract, zone, ego, other) {
+            continue;
+        }
+        let slowest = Real::max(ego.speed - contract.speed_error, 0.0);
+        let needs = margin::safe_gap(contract, other.bounds.speed.to, slowest);
+        let enough = gap_ahead(contract, zone, ego, other) >= needs;
+        if appeared || has(other.counted, index) || enough {
+            other.settled |= 1 << index;
+        }
+    }
 }

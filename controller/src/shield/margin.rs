@@ -18,10 +18,13 @@ pub struct Departure<R> {
     pub least: Reach<R>,
 }
 
-/// The speed (m/s) up to which the ego certainly does what is commanded: its limiter, too, errs by the
-/// speed error at most.
+/// The speed (m/s) up to which the ego certainly goes as hard as it plans: neither its limiter, which errs by the
+/// speed error at most, nor [`super::choice::most`] holds it back.
 pub fn unlimited<R: Real>(contract: &Contract) -> R {
-    let speed = R::of(contract.ego.max_speed) - R::of(contract.speed_error);
+    let error = R::of(contract.speed_error);
+    let late = R::of(contract.ego.acceleration) * R::of(contract.switching());
+    let gain = R::of(contract.ego.go) * R::of(contract.period);
+    let speed = R::of(contract.ego.max_speed) - error - error - late - gain;
     // A contract whose error exceeds its speed limit says nothing about how fast the ego gets.
     speed.max(R::of(0.01))
 }
@@ -35,8 +38,8 @@ pub fn departure<R: Real>(
     command: R,
 ) -> Departure<R> {
     let error = R::of(contract.speed_error);
-    let latency = R::of(contract.latency);
-    let rest = R::of(contract.period) - latency;
+    let latency = R::of(contract.switching());
+    let rest = R::of(contract.shortest_period()) - latency;
     let (go, cap) = (R::of(contract.ego.go), unlimited(contract));
     let most = Reach::start(speed + error)
         .at_most(previous_most.max(command), latency)
@@ -56,7 +59,7 @@ pub fn departure<R: Real>(
 pub fn clearing<R: Real>(contract: &Contract, least: Reach<R>, target: R) -> (R, R) {
     let (time, speed) = least.until(target, R::of(contract.ego.go), unlimited(contract));
     (
-        time + R::of(contract.period) + R::of(contract.latency),
+        time + R::of(contract.shortest_period()) + R::of(contract.switching()),
         speed,
     )
 }
@@ -65,7 +68,7 @@ pub fn clearing<R: Real>(contract: &Contract, least: Reach<R>, target: R) -> (R,
 /// at `clears` (s from now) even if the last command takes effect at once and the first one late.
 #[must_use]
 pub fn periods(contract: &Contract, clears: f32) -> u16 {
-    let count = (clears - contract.period) / contract.period;
+    let count = (clears - contract.shortest_period()) / contract.period;
     // Truncates towards zero and saturates; bounded by the horizon in any case.
     let whole = count as u16;
     if f32::from(whole) < count {

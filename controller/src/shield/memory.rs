@@ -1,121 +1,165 @@
-//! What the shield remembers from one decision to the next.
+//! What the shield remembers of the ego from one decision to the next: its plan, its commands, where it was.
 
 use super::contract::Contract;
 use super::margin;
 use super::plan::Plan;
 use super::reach::Reach;
-use crate::decision::Breach;
-use crate::observation::{Observation, Vehicle};
+use crate::instant::{Instant, micros};
+use crate::observation::Vehicle;
 
-/// The plan that was verified last, the commands given, and what was seen.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Memory<const N: usize> {
-    /// What is left of the last verified plan. Void if there is none, or if the contract was broken since.
-    pub(crate) plan: Option<Plan>,
+/// What is left of the plan that was verified last.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Remembered {
+    plan: Plan,
+    /// When it was verified.
+    at: Instant,
+    /// Calls since then.
+    calls: u32,
+    /// Arc length (m) of the ego at which the zones begin that it stays out of because nobody watches them.
+    closed: f32,
+}
+
+/// The plan that was verified last, the commands given, and where the ego was.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Memory {
+    remembered: Option<Remembered>,
     /// The last command in m/s², and the one before it.
     commands: [Option<f32>; 2],
-    last: Option<Observation<N>>,
-    /// Periods since `last`.
-    age: u16,
+    /// When the last command was given.
+    given: Option<Instant>,
+    last: Option<(Vehicle, Instant)>,
+    /// Calls since `last`.
+    blind: u16,
 }
 
-impl<const N: usize> Memory<N> {
+impl Memory {
     pub(crate) const fn new() -> Self {
         Self {
-            plan: None,
+            remembered: None,
             commands: [None; 2],
+            given: None,
             last: None,
-            age: 0,
+            blind: 0,
         }
     }
 
-    /// The ego's acceleration until the next command takes effect: least and most.
-    pub(crate) fn in_effect(&self, contract: &Contract) -> [f32; 2] {
-        let [command, _] = self.commands;
-        command.map_or(
-            [-contract.ego.braking, contract.ego.acceleration],
-            |command| [command; 2],
-        )
+    /// What is left of the last verified plan. None if there is none, or if it is void.
+    pub(crate) fn plan(&self) -> Option<Plan> {
+        self.remembered.map(|remembered| remembered.plan)
     }
 
-    pub(crate) fn tick(&mut self) {
-        self.age = self.age.saturating_add(1);
+    /// A plan is verified at `now` against everybody, and stays out of what is `closed` (m).
+    pub(crate) fn verified(&mut self, plan: Plan, now: Instant, closed: f32) {
+        self.remembered = Some(Remembered {
+            plan,
+            at: now,
+            calls: 0,
+            closed,
+        });
     }
 
-    pub(crate) fn command(&mut self, acceleration: f32) {
-        self.commands = [Some(acceleration), self.commands[0]];
-    }
-
-    /// Notes what is seen now, and whether it can have come from what was seen last.
-    ///
-    /// If it cannot, the remembered plan is void: it was verified against a world that is not this
-    /// one. So it is if somebody has appeared whom it did not consider.
-    pub(crate) fn note(&mut self, contract: &Contract, seen: &Observation<N>) -> Option<Breach> {
-        let mut breach = None;
-        let mut newcomer = false;
-        if let Some(last) = &self.last {
-            let time = f32::from(self.age) * contract.period;
-            let others = last.others.iter().zip(seen.others.iter());
-            for (number, pair) in (0_u8..).zip(others) {
-                match pair {
-                    (Some(last), Some(now)) if !other_can(contract, last, now, time) => {
-                        breach = breach.or(Some(Breach::Other(number)));
-                    }
-                    (None, Some(_)) => newcomer = true,
-                    _ => {}
-                }
-            }
-            if !self.ego_can(contract, &last.ego, &seen.ego, time) {
-                breach = Some(Breach::Ego);
-            }
+    /// What is left of the plan holds from `now` on, whenever it was verified.
+    pub(crate) fn confirmed(&mut self, now: Instant, closed: f32) {
+        if let Some(remembered) = &mut self.remembered {
+            remembered.at = now;
+            remembered.calls = 0;
+            remembered.closed = closed;
         }
-        if breach.is_some() || newcomer {
-            self.plan = None;
-        }
-        self.last = Some(*seen);
-        self.age = 0;
-        breach
     }
 
-    fn ego_can(&self, contract: &Contract, last: &Vehicle, now: &Vehicle, time: f32) -> bool {
-        let [command, before] = self.commands;
-        let (least, most) = match (command, before) {
-            (Some(a), Some(b)) if self.age == 1 => {
-                if a < b {
-                    (a, b)
-                } else {
-                    (b, a)
-                }
-            }
-            _ => (-contract.ego.braking, contract.ego.acceleration),
+    pub(crate) fn void(&mut self) {
+        self.remembered = None;
+    }
+
+    /// One command of the plan was carried out.
+    pub(crate) fn shorten(&mut self, tail: impl Fn(Plan) -> Plan) {
+        if let Some(remembered) = &mut self.remembered {
+            remembered.plan = tail(remembered.plan);
+        }
+    }
+
+    /// Whether the plan stays out of zones that begin at `closed` (m).
+    pub(crate) fn avoids(&self, closed: f32) -> bool {
+        self.remembered
+            .is_none_or(|remembered| remembered.closed <= closed)
+    }
+
+    /// Another call at `now`. Whether the plan's commands have been given at the times that it counts on.
+    pub(crate) fn call(&mut self, contract: &Contract, now: Instant) -> bool {
+        self.blind = self.blind.saturating_add(1);
+        let Some(remembered) = &mut self.remembered else {
+            return true;
         };
+        remembered.calls = remembered.calls.saturating_add(1);
+        let due = u64::from(remembered.calls).saturating_mul(micros(contract.period));
+        let away = now.since(remembered.at).abs_diff(due);
+        // Half a microsecond a period, from rounding the period.
+        away <= micros(contract.jitter).saturating_add(1 + u64::from(remembered.calls))
+    }
+
+    /// The ego's acceleration until the command to be given at `now` takes effect: least and most.
+    pub(crate) fn in_effect(&self, contract: &Contract, now: Instant) -> [f32; 2] {
+        let settled = self
+            .given
+            .is_some_and(|given| now.since(given) + 1 >= micros(contract.latency));
+        match self.commands {
+            [Some(command), _] if settled => [command; 2],
+            commands => between(contract, commands),
+        }
+    }
+
+    pub(crate) fn command(&mut self, acceleration: f32, now: Instant) {
+        self.commands = [Some(acceleration), self.commands[0]];
+        self.given = Some(now);
+    }
+
+    /// Notes where the ego is at `now`, and whether its commands can have brought it there.
+    pub(crate) fn note(&mut self, contract: &Contract, ego: &Vehicle, now: Instant) -> bool {
+        let possible = self
+            .last
+            .is_none_or(|(last, at)| self.can(contract, &last, ego, now.seconds_since(at)));
+        self.last = Some((*ego, now));
+        self.blind = 0;
+        possible
+    }
+
+    /// The ego's speed (m/s), at least, if it is not seen at `now`.
+    pub(crate) fn least_speed(&self, contract: &Contract, now: Instant) -> f32 {
+        self.last.map_or(0.0, |(last, at)| {
+            let [least, _] = self.accelerations(contract);
+            let cap = margin::unlimited(contract);
+            let start = Reach::start(last.speed - contract.speed_error);
+            start.at_least(least, cap, now.seconds_since(at)).speed
+        })
+    }
+
+    /// The ego's acceleration since it was seen last: least and most.
+    fn accelerations(&self, contract: &Contract) -> [f32; 2] {
+        match self.commands {
+            commands if self.blind <= 1 => between(contract, commands),
+            _ => between(contract, [None; 2]),
+        }
+    }
+
+    fn can(&self, contract: &Contract, last: &Vehicle, now: &Vehicle, time: f32) -> bool {
+        let [least, most] = self.accelerations(contract);
         let error = contract.speed_error;
-        let least =
-            Reach::start(last.speed - error).at_least(least, margin::unlimited(contract), time);
+        let cap = margin::unlimited(contract);
+        let least = Reach::start(last.speed - error).at_least(least, cap, time);
         let most = Reach::start(last.speed + error).at_most(most, time);
-        moved(contract, last, now, least, most)
+        let distance = 2.0 * contract.position_error + contract.slack;
+        let speed = error + contract.slack;
+        let way = now.s - last.s;
+        (least.distance - distance..=most.distance + distance).contains(&way)
+            && (least.speed - speed..=most.speed + speed).contains(&now.speed)
     }
 }
 
-/// Whether an other seen as `last` can be as it is seen `now`, `time` (s) later.
-fn other_can(contract: &Contract, last: &Vehicle, now: &Vehicle, time: f32) -> bool {
-    let error = contract.speed_error;
-    let least = Reach::start(last.speed - error).at_least(-contract.other.braking, 0.0, time);
-    let most = margin::rush(contract, last.speed + error, time);
-    moved(contract, last, now, least, most)
-}
-
-/// Whether the way from `last` to `now` is between `least` and `most`, but for sensing errors.
-fn moved(
-    contract: &Contract,
-    last: &Vehicle,
-    now: &Vehicle,
-    least: Reach<f32>,
-    most: Reach<f32>,
-) -> bool {
-    let distance = 2.0 * contract.position_error + contract.slack;
-    let speed = contract.speed_error + contract.slack;
-    let way = now.s - last.s;
-    (least.distance - distance..=most.distance + distance).contains(&way)
-        && (least.speed - speed..=most.speed + speed).contains(&now.speed)
+/// The least and the most of two commands; anything, if one of them is not known.
+fn between(contract: &Contract, commands: [Option<f32>; 2]) -> [f32; 2] {
+    match commands {
+        [Some(a), Some(b)] if a < b => [a, b],
+        [Some(a), Some(b)] => [b, a],
+        _ => [-contract.ego.braking, contract.ego.acceleration],
+    }
 }

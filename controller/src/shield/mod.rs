@@ -5,66 +5,203 @@
 //! acceleration of a fixed grid is taken; otherwise the next command of the plan that was verified last;
 //! and if there is none, the ego brakes and says so. `docs/theorem.md` has the theorem.
 
+mod bounds;
 pub mod choice;
+mod clock;
 mod contract;
+pub(crate) mod door;
 mod hazard;
 pub mod margin;
 mod memory;
 mod plan;
-mod precedence;
+pub(crate) mod precedence;
 pub mod reach;
 pub(crate) mod rules;
 #[cfg(test)]
 mod tests;
+pub(crate) mod tracks;
 mod verified;
-mod waiting;
+pub(crate) mod waiting;
 
+pub use bounds::Bounds;
 pub use contract::{Contract, ContractBuilder, ContractError, Ego, Follower, Other, Precedence};
 pub use plan::Plan;
 use rules::{Rules, Sound};
 
-use crate::decision::{Action, Cause, Decision, Intervention, Reason};
-use crate::junction::scene::Scene;
-use crate::observation::{Fault, Observation};
-use choice::{allowed, nearest};
+use crate::decision::{Action, Breach, Cause, Decision, Intervention, Reason};
+use crate::fault::Fault;
+use crate::instant::Instant;
+use crate::junction::zone::FAR;
+use crate::junction::{Junction, MAX_OTHERS, PathId, RightOfWay, Way};
+use crate::observation::{Observation, Vehicle};
+use choice::{allowed, most, nearest};
+use clock::{Clock, Tick};
 use core::marker::PhantomData;
 use hazard::{Hazards, Passage};
 use memory::Memory;
-use precedence::{Claims, Precedences};
-use verified::{Verified, best, passage_margin};
+use tracks::{Findings, Tracks};
+use verified::{Verified, best, passage_margin, spare};
+use waiting::{Presence, RestState, Sighting};
 
 /// An ego without a safe plan that is less than this (m) in a zone stays there.
 const NOSE: f32 = 0.5;
 
-/// The shield of one vehicle among up to `N` others; it remembers, so there is one for each.
+/// Periods since the last call above which nothing is known any more of who rested.
+const LOST: u16 = 16;
+
+/// The shield of one vehicle on its way through one junction. It watches up to `N` others that matter, at most
+/// [`MAX_OTHERS`], each on one path.
 ///
-/// Filters the proposals of any driver. Its size is that of two observations.
+/// Filters the proposals of any driver. It borrows the junction, so that what it remembers cannot be used at another one:
+///
+/// ```compile_fail,E0505
+/// use cede_controller::{Contract, Junction, PathId, Shield};
+///
+/// fn two(first: Junction<2, 16>, path: PathId) {
+///     let shield = Shield::<8>::enter(Contract::WORST_CASE, &first, path);
+///     drop(first);
+///     let _ = shield;
+/// }
+/// ```
 #[derive(Clone, Debug)]
-pub struct Shield<const N: usize, R: Rules = Sound> {
+pub struct Shield<'j, const N: usize = MAX_OTHERS, R: Rules = Sound> {
     contract: Contract,
-    memory: Memory<N>,
-    precedences: Precedences<N>,
+    way: Way<'j>,
+    clock: Clock,
+    memory: Memory,
+    tracks: Tracks<N>,
+    /// How the ego came to its line.
+    presence: Presence,
+    /// The contract was replaced: the remembered plan has not been verified under it.
+    replaced: bool,
+    last: Decision,
     rules: PhantomData<R>,
 }
 
-impl<const N: usize> Shield<N> {
-    /// A shield that has seen nothing yet.
-    #[must_use]
-    pub fn new(contract: Contract) -> Self {
-        Self::with_rules(contract)
+/// Why an approach cannot begin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum EnterError {
+    /// The junction has no such path, or has not prepared it to be entered.
+    Path {
+        /// Its number.
+        path: PathId,
+    },
+    /// In a lane that the ego shares with another path, nobody could tell who is ahead: `position_error` of the contract
+    /// is too large for it.
+    PositionError {
+        /// The other path.
+        path: PathId,
+        /// The contract's value in m.
+        value: f32,
+        /// It must be less than this (m), a quarter of the width of the lane's band.
+        below: f32,
+    },
+}
+
+impl core::fmt::Display for EnterError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Path { path } => write!(
+                f,
+                "path {} is not one that the junction lets an ego enter by",
+                path.index()
+            ),
+            Self::PositionError { path, value, below } => write!(
+                f,
+                "position_error = {value} is outside [0, {below}): in the lane shared with path {} \
+                 it would not tell who is ahead",
+                path.index()
+            ),
+        }
     }
 }
 
-impl<const N: usize, R: Rules> Shield<N, R> {
-    /// A shield with rules of its own, which are not proved: see [`Rules`].
-    #[must_use]
-    pub fn with_rules(contract: Contract) -> Self {
-        Self {
-            contract,
-            memory: Memory::new(),
-            precedences: Precedences::new(),
-            rules: PhantomData,
+impl core::error::Error for EnterError {}
+
+/// Why control cannot be handed over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum NotReady {
+    /// The ego's state cannot be trusted.
+    Fault(Fault),
+    /// No plan is safe. What stands in the way of the one that goes farthest, by how many metres it falls short, and
+    /// what is wrong with the tracks, if something is.
+    NoPlan {
+        /// What stands in the way.
+        reason: Reason,
+        /// Metres to spare of the best plan, negative.
+        margin: f32,
+        /// What is wrong with the tracks.
+        fault: Option<Fault>,
+    },
+}
+
+impl core::fmt::Display for NotReady {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Fault(fault) => write!(f, "not ready: {fault}"),
+            Self::NoPlan { reason, fault, .. } => {
+                write!(f, "no plan is safe: {reason}")?;
+                fault.map_or(Ok(()), |fault| write!(f, "; {fault}"))
+            }
         }
+    }
+}
+
+impl core::error::Error for NotReady {}
+
+/// What a decision is made of, once the observation is noted.
+struct Scene<'s> {
+    ego: &'s Vehicle,
+    hazards: &'s Hazards,
+    /// The accelerations that are in effect: least and most.
+    in_effect: [f32; 2],
+    /// The hardest acceleration that may be commanded.
+    most: f32,
+}
+
+impl<'j, const N: usize> Shield<'j, N> {
+    /// A shield for an ego that enters `junction` by `path`. It has seen nothing yet.
+    ///
+    /// # Errors
+    /// See [`EnterError`].
+    pub fn enter<const Q: usize, const P: usize, const E: usize>(
+        contract: Contract,
+        junction: &'j Junction<Q, P, E>,
+        path: PathId,
+    ) -> Result<Self, EnterError> {
+        Self::with_rules(contract, junction, path)
+    }
+}
+
+impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
+    /// Room for one other at least, and for no more than there are hazards.
+    const ROOM: () = assert!(N >= 1 && N <= MAX_OTHERS, "a shield watches 1 to 8 others");
+
+    /// A shield with rules of its own, which are not proved: see [`Rules`].
+    ///
+    /// # Errors
+    /// See [`EnterError`].
+    pub fn with_rules<const Q: usize, const P: usize, const E: usize>(
+        contract: Contract,
+        junction: &'j Junction<Q, P, E>,
+        path: PathId,
+    ) -> Result<Self, EnterError> {
+        let () = Self::ROOM;
+        let way = junction.way(path).ok_or(EnterError::Path { path })?;
+        tells_apart(&contract, way)?;
+        Ok(Self {
+            contract,
+            way,
+            clock: Clock::default(),
+            memory: Memory::new(),
+            tracks: Tracks::new(),
+            presence: Presence::default(),
+            replaced: false,
+            last: Decision::none(&contract),
+            rules: PhantomData,
+        })
     }
 
     /// What it assumes.
@@ -73,151 +210,509 @@ impl<const N: usize, R: Rules> Shield<N, R> {
         &self.contract
     }
 
-    /// The plan that it falls back on; none if nothing has been verified, or if the contract was broken since.
+    /// The ego's way through the junction.
     #[must_use]
-    pub const fn plan(&self) -> Option<Plan> {
-        self.memory.plan
+    pub const fn way(&self) -> Way<'j> {
+        self.way
     }
 
-    /// The acceleration for the period that begins: `proposal` (m/s²) if it is safe.
+    /// The plan that it falls back on; none if nothing has been verified, or if it is void since.
+    #[must_use]
+    pub fn plan(&self) -> Option<Plan> {
+        self.memory.plan()
+    }
+
+    /// Assumes `contract` from the next decision on. The remembered plan is kept if it is safe under it.
     ///
-    /// To be called once a period, with one and the same `scene`.
+    /// # Errors
+    /// [`EnterError::PositionError`]; nothing is changed then.
+    pub fn set_contract(&mut self, contract: Contract) -> Result<(), EnterError> {
+        tells_apart(&contract, self.way)?;
+        self.contract = contract;
+        self.replaced = true;
+        Ok(())
+    }
+
+    /// The track with this number is known not to be there any more. Without it, a track that is not seen is expected
+    /// to be somewhere until it has certainly left.
+    pub fn forget(&mut self, number: u16) {
+        self.tracks.forget(number);
+    }
+
+    /// The acceleration for the period that begins `now`: `proposal` (m/s²) if it is safe.
     ///
-    /// Cost: at most 14 candidates × one clearing time for each zone. The acceleration is
+    /// To be called once a period. The same `now` again gives the same decision, an earlier one the last decision with
+    /// [`Fault::Backwards`]. After a call that is not on time the remembered plan is kept only if it is still safe.
+    ///
+    /// Cost: O(tracks × N), and at most 14 candidates × one clearing time for each zone. The acceleration is
     /// finite and within the contract's, whatever the bits of the observation and the proposal.
     // Not inlined, so that its stack is not on top of the policy's.
     #[inline(never)]
     pub fn filter(
         &mut self,
-        scene: &Scene<N>,
-        observation: &Observation<N>,
+        now: Instant,
+        observation: &Observation<'_>,
         proposal: f32,
     ) -> Decision {
-        self.memory.tick();
-        let decision = match &observation.checked(scene.conflicts().len()) {
-            Ok(seen) => self.judge(scene, seen, proposal),
-            Err(fault) => self.blind(*fault),
+        let tick = self.clock.tick(&self.contract, now);
+        match tick {
+            Tick::Repeated => return self.last,
+            Tick::Backwards => {
+                return Decision {
+                    fault: Some(Fault::Backwards),
+                    ..self.last
+                };
+            }
+            Tick::First | Tick::Next { .. } => {}
+        }
+        let on_time = self.memory.call(&self.contract, now);
+        let mut decision = match door::ego(self.way, &self.contract, &observation.ego) {
+            Ok(ego) => {
+                let recheck = !on_time || self.replaced;
+                self.replaced = false;
+                self.judge((now, tick), &ego, observation, (proposal, recheck))
+            }
+            Err(fault) => self.blind((now, tick), fault, on_time),
         };
-        self.memory.command(decision.acceleration);
+        if let Some(fault) = self.off_period(tick) {
+            decision.fault = decision.fault.or(Some(fault));
+        }
+        self.memory.command(decision.acceleration, now);
+        self.last = decision;
         decision
     }
 
+    /// Whether a plan is safe from `now` on, before control is handed over: metres to spare of the best one. Remembers
+    /// nothing.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn ready(&self, now: Instant, observation: &Observation<'_>) -> Result<f32, NotReady> {
+        let contract = &self.contract;
+        let ego = door::ego(self.way, contract, &observation.ego).map_err(NotReady::Fault)?;
+        let mut next = self.copy();
+        let findings = next.look((now, Tick::First), &ego, observation);
+        let mut hazards = Hazards::new();
+        hazards.add::<N, R>(contract, self.way, (&ego, &next.tracks), findings.closed);
+        let in_effect = self.memory.in_effect(contract, now);
+        let most = most(contract, ego.speed, in_effect[1]);
+        let scene = Scene {
+            ego: &ego,
+            hazards: &hazards,
+            in_effect,
+            most,
+        };
+        let braking = -contract.ego.braking;
+        let accepted = |a| Some(scene.check::<R>(contract, a)).filter(|v| v.margin >= 0.0);
+        match nearest(&contract.ego, most, braking, accepted) {
+            Some((_, verified)) => Ok(verified.margin),
+            None => Err(NotReady::NoPlan {
+                reason: scene.reason::<R>(contract, braking),
+                margin: scene.check::<R>(contract, braking).margin,
+                fault: findings.fault,
+            }),
+        }
+    }
+
     /// Metres to spare of the best plan after one period at `acceleration` (m/s²), given now while `previous`
-    /// (m/s²) is in effect; not negative exactly if the shield would accept it. Remembers nothing, and
-    /// assumes no precedence.
+    /// (m/s²) is in effect; not negative exactly if the shield would accept it. Remembers nothing, knows nobody but whom
+    /// it sees, and assumes no precedence.
     ///
     /// # Errors
     /// The fault of the observation, or of an acceleration that is not a number.
     pub fn margin(
         &self,
-        scene: &Scene<N>,
-        observation: &Observation<N>,
+        observation: &Observation<'_>,
         previous: f32,
         acceleration: f32,
     ) -> Result<f32, Fault> {
         if !(previous.is_finite() && acceleration.is_finite()) {
             return Err(Fault::Proposal);
         }
-        let seen = observation.checked(scene.conflicts().len())?;
+        let contract = &self.contract;
+        let ego = door::ego(self.way, contract, &observation.ego)?;
+        let mut tracks = Tracks::<N>::new();
+        let now = Instant::default();
+        let findings = tracks.note::<R>(contract, self.way, now, &ego, observation);
+        if let Some(fault) = findings.fault {
+            return Err(fault);
+        }
+        settle::<N, R>(contract, self.way, &ego, &mut tracks);
         let mut hazards = Hazards::new();
-        hazards.add::<N, R>(&self.contract, scene, &seen, Claims::default());
-        let speed = seen.ego.speed;
-        let acceleration = allowed(&self.contract.ego, speed, acceleration);
-        let verdict = check::<R>(&self.contract, &hazards, speed, [previous; 2], acceleration);
-        Ok(verdict.margin)
-    }
-
-    fn blind(&mut self, fault: Fault) -> Decision {
-        if let Some(rule) = self.contract.precedence {
-            self.precedences.blind::<R>(&self.contract, rule);
-        }
-        Decision {
-            acceleration: self.carry_on(),
-            cause: Cause::Fallback(fault),
-            margin: 0.0,
-            breach: None,
-            prediction: None,
-        }
-    }
-
-    fn judge(&mut self, scene: &Scene<N>, seen: &Observation<N>, proposal: f32) -> Decision {
-        let breach = self.memory.note(&self.contract, seen);
-        let claims = match self.contract.precedence {
-            Some(rule) => self
-                .precedences
-                .note::<R>(&self.contract, rule, scene, seen),
-            None => Claims::default(),
+        hazards.add::<N, R>(contract, self.way, (&ego, &tracks), findings.closed);
+        let scene = Scene {
+            ego: &ego,
+            hazards: &hazards,
+            in_effect: [previous; 2],
+            most: most(contract, ego.speed, previous),
         };
+        let acceleration = allowed(&contract.ego, scene.most, acceleration);
+        Ok(scene.check::<R>(contract, acceleration).margin)
+    }
+
+    /// The same shield; its rules need not be `Clone`.
+    fn copy(&self) -> Self {
+        Self {
+            tracks: self.tracks.clone(),
+            rules: PhantomData,
+            ..*self
+        }
+    }
+
+    /// Whether a call at `now` is a new one.
+    pub(crate) fn is_new(&self, now: Instant) -> bool {
+        self.clock.last().is_none_or(|last| now > last)
+    }
+
+    /// Why the time of a call is wrong, if it is.
+    fn off_period(&self, tick: Tick) -> Option<Fault> {
+        match tick {
+            Tick::Next {
+                elapsed,
+                on_time: false,
+                ..
+            } => Some(Fault::OffPeriod {
+                elapsed: elapsed as f32 * 1.0e-6,
+                period: self.contract.period,
+            }),
+            _ => None,
+        }
+    }
+
+    /// The ego's own state cannot be trusted: it carries on with the plan, if its commands were given in time.
+    fn blind(&mut self, (now, tick): (Instant, Tick), fault: Fault, on_time: bool) -> Decision {
+        self.tracks.coast::<R>(&self.contract, now);
+        self.wait((now, tick), None);
+        if !on_time {
+            self.void();
+        }
+        let in_effect = self.memory.in_effect(&self.contract, now);
+        let speed = self.memory.least_speed(&self.contract, now);
+        let acceleration = self.carry_on(most(&self.contract, speed, in_effect[1]));
+        let plan = self.memory.plan();
+        Decision {
+            acceleration,
+            cause: Cause::Fallback(if plan.is_some() { fault } else { Fault::NoPlan }),
+            margin: 0.0,
+            plan,
+            fault: Some(fault),
+            ..Decision::none(&self.contract)
+        }
+    }
+
+    /// Notes what is seen and who goes first.
+    fn look(
+        &mut self,
+        when: (Instant, Tick),
+        ego: &Vehicle,
+        observation: &Observation<'_>,
+    ) -> Findings {
+        let (now, _) = when;
+        let findings = self
+            .tracks
+            .note::<R>(&self.contract, self.way, now, ego, observation);
+        self.wait(when, Some(ego));
+        settle::<N, R>(&self.contract, self.way, ego, &mut self.tracks);
+        findings
+    }
+
+    /// Notes who has arrived and who rests, and over whom the ego has precedence.
+    fn wait(&mut self, (now, tick): (Instant, Tick), ego: Option<&Vehicle>) {
+        let contract = &self.contract;
+        let Some(rule) = contract.precedence else {
+            return;
+        };
+        let periods = match tick {
+            Tick::First => 1,
+            Tick::Next { periods, .. } => periods,
+            Tick::Repeated | Tick::Backwards => 0,
+        };
+        let mine = Sighting::of_ego(contract, ego);
+        let unseen = |sighting: Sighting| Sighting {
+            rest: RestState::Perhaps,
+            ..sighting
+        };
+        if periods > LOST {
+            self.presence.forget();
+            self.tracks.iter_mut().for_each(|other| other.pair.forget());
+        }
+        if periods == 0 {
+            self.presence.note_again(mine.rest);
+            for other in self.tracks.iter_mut() {
+                other.pair.other.note_again(other.sighting(contract).rest);
+            }
+        }
+        let line = |path: PathId| self.way.path(path).map_or(FAR, |path| path.line());
+        // Of the periods in which there was no call, nothing is known.
+        for missed in (0..periods.min(LOST)).rev() {
+            let seen = |sighting: Sighting| {
+                if missed == 0 {
+                    sighting
+                } else {
+                    unseen(sighting)
+                }
+            };
+            let own = line(self.way.ego());
+            self.presence.note(contract, rule, own, seen(mine), now);
+            for other in self.tracks.iter_mut() {
+                let its = seen(other.sighting(contract));
+                other
+                    .pair
+                    .other
+                    .note(contract, rule, line(other.path), its, now);
+                let conflict = self.way.conflict(other.path);
+                let right_of_way =
+                    conflict.map_or(RightOfWay::Unsettled, |conflict| conflict.right_of_way);
+                let right_of_way = if ego.is_some() {
+                    right_of_way
+                } else {
+                    RightOfWay::Unsettled
+                };
+                other
+                    .pair
+                    .pass::<R>(contract, rule, right_of_way, &self.presence);
+            }
+        }
+        for other in self.tracks.iter_mut() {
+            let Some(conflict) = self.way.conflict(other.path) else {
+                continue;
+            };
+            let row = conflict.right_of_way;
+            other.claims = other.pair.claims(contract, rule, row, &self.presence);
+            if let Some(ego) = ego.filter(|_| other.claims != precedence::ALL) {
+                other
+                    .pair
+                    .hold::<R>(contract, &self.presence, conflict.zones(), ego.s);
+                other.claims = other.pair.claims(contract, rule, row, &self.presence);
+            }
+        }
+    }
+
+    fn judge(
+        &mut self,
+        when: (Instant, Tick),
+        ego: &Vehicle,
+        observation: &Observation<'_>,
+        (proposal, recheck): (f32, bool),
+    ) -> Decision {
+        let (now, _) = when;
+        let deviated = !self.memory.note(&self.contract, ego, now);
+        if deviated {
+            self.tracks.iter_mut().for_each(|other| other.counted = 0);
+        }
+        let findings = self.look(when, ego, observation);
         let mut hazards = Hazards::new();
-        hazards.add::<N, R>(&self.contract, scene, seen, claims);
-        let speed = seen.ego.speed;
-        let wanted = allowed(&self.contract.ego, speed, proposal);
-        let in_effect = self.memory.in_effect(&self.contract);
-        let check = |a| check::<R>(&self.contract, &hazards, speed, in_effect, a);
-        let verdict = check(wanted);
-        let accepted = |a| Some(check(a)).filter(|verdict| verdict.margin >= 0.0);
-        let nearest = || nearest(&self.contract.ego, speed, wanted, accepted);
+        hazards.add::<N, R>(
+            &self.contract,
+            self.way,
+            (ego, &self.tracks),
+            findings.closed,
+        );
+        let in_effect = self.memory.in_effect(&self.contract, now);
+        let scene = Scene {
+            ego,
+            hazards: &hazards,
+            in_effect,
+            most: most(&self.contract, ego.speed, in_effect[1]),
+        };
+        let closed = findings.closed.map_or(FAR, |closed| closed.from);
+        self.verify_again(&scene, now, deviated || recheck, closed);
+        let breach = if deviated {
+            Some(Breach::Ego)
+        } else {
+            findings.breach.map(Breach::Other)
+        };
+        Decision {
+            breach,
+            fault: findings.fault,
+            unwatched: findings.closed.map(|closed| closed.number),
+            ..self.decide(&scene, (now, closed), proposal)
+        }
+    }
+
+    /// Voids the remembered plan unless it is safe against whoever it was not verified against.
+    fn verify_again(&mut self, scene: &Scene<'_>, now: Instant, all: bool, closed: f32) {
+        let Some(plan) = self.memory.plan() else {
+            return;
+        };
+        let contract = &self.contract;
+        let barred = !self.memory.avoids(closed);
+        let suspects = scene
+            .hazards
+            .iter()
+            .filter(|hazard| all || hazard.suspect || (barred && hazard.place == u8::MAX));
+        let mut suspects = suspects.peekable();
+        if suspects.peek().is_none() {
+            return;
+        }
+        let command = allowed(&contract.ego, scene.most, next(contract, plan));
+        let departure = R::departure(contract, scene.ego.speed, scene.in_effect, command);
+        let margin = spare::<R>(contract, suspects, &departure, R::tail(plan));
+        if !R::keeps(margin) {
+            self.void();
+        } else if all || barred {
+            self.memory.confirmed(now, closed);
+        }
+    }
+
+    fn void(&mut self) {
+        self.memory.void();
+        self.tracks.iter_mut().for_each(|other| other.counted = 0);
+    }
+
+    fn decide(
+        &mut self,
+        scene: &Scene<'_>,
+        (now, closed): (Instant, f32),
+        proposal: f32,
+    ) -> Decision {
+        let contract = self.contract;
+        let wanted = allowed(&contract.ego, scene.most, proposal);
+        let verdict = scene.check::<R>(&contract, wanted);
+        let accepted = |a| Some(scene.check::<R>(&contract, a)).filter(|v| v.margin >= 0.0);
         let found = if verdict.margin >= 0.0 {
             Some((wanted, verdict))
         } else {
-            nearest()
+            nearest(&contract.ego, scene.most, wanted, accepted)
         };
-        let cause = if !proposal.is_finite() {
+        let planned = found.is_some() || self.memory.plan().is_some();
+        let cause = if !planned {
+            Cause::Fallback(Fault::NoPlan)
+        } else if !proposal.is_finite() {
             Cause::Fallback(Fault::Proposal)
         } else if verdict.margin >= 0.0 {
             Cause::Policy
-        } else if found.is_some() || self.memory.plan.is_some() {
+        } else {
             Cause::Shielded(Intervention {
                 action: if found.is_some() {
                     Action::Nearest
                 } else {
                     Action::Remembered
                 },
-                reason: self.reason(&hazards, speed, in_effect, wanted),
+                reason: scene.reason::<R>(&contract, wanted),
             })
-        } else {
-            Cause::Fallback(Fault::Unverified)
         };
         let acceleration = match found {
             Some((acceleration, verified)) => {
-                self.memory.plan = Some(verified.plan);
+                self.memory.verified(verified.plan, now, closed);
+                self.count_on(scene.hazards, verified);
                 acceleration
             }
-            None if self.memory.plan.is_none() && leaves(&hazards) => {
-                allowed(&self.contract.ego, speed, self.contract.ego.go)
+            None if !planned && scene.leaves::<R>(&contract) => {
+                allowed(&contract.ego, scene.most, contract.ego.go)
             }
-            None => self.carry_on(),
+            None => self.carry_on(scene.most),
         };
         Decision {
             acceleration,
             cause,
             margin: found.map_or(verdict.margin, |(_, verified)| verified.margin),
-            breach,
-            prediction: None,
+            plan: self.memory.plan(),
+            ..Decision::none(&contract)
+        }
+    }
+
+    /// Notes which lanes the plan enters ahead of somebody.
+    fn count_on(&mut self, hazards: &Hazards, verified: Verified) {
+        self.tracks.iter_mut().for_each(|other| other.counted = 0);
+        for hazard in hazards
+            .iter()
+            .filter(|hazard| hazard.target <= verified.passes)
+        {
+            let other = self.tracks.iter_mut().nth(hazard.place.into());
+            if let (Passage::Ahead { .. }, Some(other)) = (hazard.passage, other) {
+                other.counted |= 1 << hazard.zone;
+            }
         }
     }
 
     /// The next command of the remembered plan, which is then one command shorter; braking, if there is none.
-    fn carry_on(&mut self) -> f32 {
-        let ego = self.contract.ego;
-        let Some(plan) = self.memory.plan else {
-            return -ego.braking;
+    fn carry_on(&mut self, most: f32) -> f32 {
+        let contract = &self.contract;
+        let Some(plan) = self.memory.plan() else {
+            return -contract.ego.braking;
         };
-        self.memory.plan = Some(R::tail(plan));
-        if plan.go > 0 { ego.go } else { -ego.braking }
+        self.memory.shorten(R::tail);
+        allowed(&contract.ego, most, next(contract, plan))
+    }
+}
+
+/// The next command (m/s²) of a plan.
+const fn next(contract: &Contract, plan: Plan) -> f32 {
+    if plan.go > 0 {
+        contract.ego.go
+    } else {
+        -contract.ego.braking
+    }
+}
+
+/// Whether in every lane that the ego shares, sensed positions tell who is ahead.
+fn tells_apart(contract: &Contract, way: Way<'_>) -> Result<(), EnterError> {
+    for (path, conflict) in way.conflicts() {
+        for zone in conflict.zones().filter(|zone| zone.is_lane()) {
+            let below = 0.25 * (zone.lead.to - zone.lead.from);
+            let value = contract.position_error;
+            if value >= below {
+                return Err(EnterError::PositionError { path, value, below });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Notes in which lanes the ego is ahead, and the others keep their distance.
+fn settle<const N: usize, R: Rules>(
+    contract: &Contract,
+    way: Way<'_>,
+    ego: &Vehicle,
+    tracks: &mut Tracks<N>,
+) {
+    for other in tracks.iter_mut() {
+        if let Some(conflict) = way.conflict(other.path) {
+            hazard::settle::<R>(contract, conflict.zones(), ego, other);
+        }
+    }
+}
+
+impl Scene<'_> {
+    /// The best plan after one period at `command`.
+    fn check<R: Rules>(&self, contract: &Contract, command: f32) -> Verified {
+        let departure = R::departure(contract, self.ego.speed, self.in_effect, command);
+        best::<R>(contract, self.hazards, &departure)
+    }
+
+    /// Whether an ego without a safe plan accelerates out of its zones instead of braking: it stands in zones, none
+    /// of the others may be in its own, and nobody stands in the way until the ego would be at rest again.
+    fn leaves<R: Rules>(&self, contract: &Contract) -> bool {
+        let go = allowed(&contract.ego, self.most, contract.ego.go);
+        let departure = R::departure(contract, self.ego.speed, self.in_effect, go);
+        let rest = departure.braking.rest(contract.ego.braking);
+        let outside = |passage| match passage {
+            Passage::Before { distance, .. } => distance > 0.0,
+            // It comes from behind.
+            Passage::Ahead { gap, .. } => gap > 0.0,
+            Passage::Never => false,
+        };
+        let inside = |limit: f32| limit < -NOSE;
+        let stands_in_one = self.hazards.iter().any(|hazard| inside(hazard.limit));
+        stands_in_one
+            && self.hazards.iter().all(|hazard| {
+                let free = outside(hazard.passage);
+                let short = R::stops_short(contract, hazard.limit, rest) >= 0.0;
+                free || (!inside(hazard.limit) && short)
+            })
     }
 
     /// Why `command` is refused: what stands in the way of the plan that goes farthest.
-    fn reason(&self, hazards: &Hazards, speed: f32, in_effect: [f32; 2], command: f32) -> Reason {
-        let contract = &self.contract;
-        let departure = R::departure(contract, speed, in_effect, command);
+    fn reason<R: Rules>(&self, contract: &Contract, command: f32) -> Reason {
+        let departure = R::departure(contract, self.ego.speed, self.in_effect, command);
         let mut needs = departure.braking.rest(contract.ego.braking);
         let mut stop = Reason::Stop {
             other: 0,
             available: 0.0,
             needs,
         };
-        for hazard in hazards.iter() {
+        for hazard in self.hazards.iter() {
             let other = hazard.other;
             if R::stops_short(contract, hazard.limit, needs) >= 0.0 {
                 continue;
@@ -251,24 +746,4 @@ impl<const N: usize, R: Rules> Shield<N, R> {
         }
         stop
     }
-}
-
-/// The best plan after one period at `command`.
-fn check<R: Rules>(
-    contract: &Contract,
-    hazards: &Hazards,
-    speed: f32,
-    in_effect: [f32; 2],
-    command: f32,
-) -> Verified {
-    let departure = R::departure(contract, speed, in_effect, command);
-    best::<R>(contract, hazards, &departure)
-}
-
-/// Whether an ego without a safe plan accelerates out of its zones instead of braking: it stands in zones, and none
-/// of the others is in its own.
-fn leaves(hazards: &Hazards) -> bool {
-    let mut inside = hazards.iter().filter(|h| h.limit < -NOSE).peekable();
-    inside.peek().is_some()
-        && inside.all(|h| matches!(h.passage, Passage::Before { distance, .. } if distance > 0.0))
 }

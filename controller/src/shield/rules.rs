@@ -1,5 +1,6 @@
 //! The elementary rules of which the shield is composed.
 
+use super::bounds::Bounds;
 use super::contract::Contract;
 use super::margin::{self, Departure};
 use super::plan::Plan;
@@ -51,6 +52,24 @@ pub trait Rules {
     #[must_use]
     fn earliest_rest(contract: &Contract, speed: f32) -> f32 {
         margin::earliest_rest(contract, speed)
+    }
+
+    /// Where an other is that was sensed at `s` (m) with `speed` (m/s) `time` seconds ago: [`Bounds::after`].
+    #[must_use]
+    fn coast(contract: &Contract, s: f32, speed: f32, time: f32) -> Bounds {
+        Bounds::after(contract, s, speed, time)
+    }
+
+    /// Whether an ego that leads by at least `lead` (m) in a lane is ahead of the other there.
+    #[must_use]
+    fn is_ahead(zone: &Zone, lead: f32) -> bool {
+        lead > zone.lead.from
+    }
+
+    /// Whether a remembered plan with so many metres to spare keeps the guarantee against somebody new.
+    #[must_use]
+    fn keeps(margin: f32) -> bool {
+        margin >= 0.0
     }
 
     /// The arc length at which the ego has cleared a zone in which routes cross.

@@ -17,6 +17,8 @@ pub(crate) struct Verified {
     pub(crate) plan: Plan,
     /// The least of the plan's margins in m, not negative if the plan is verified.
     pub(crate) margin: f32,
+    /// The hazards with targets up to this (m) are passed.
+    pub(crate) passes: f32,
 }
 
 /// The best plan after one period at a given acceleration: stop before every hazard, or go until the
@@ -32,6 +34,7 @@ pub(crate) fn best<R: Rules>(
     let mut best = Verified {
         plan: Plan { go: 0 },
         margin: R::stops_short(contract, hazards.nearest_limit(), rest),
+        passes: -FAR - FAR,
     };
     let mut passed = FAR;
     for hazard in hazards.iter() {
@@ -48,10 +51,42 @@ pub(crate) fn best<R: Rules>(
         let rest = R::rest(contract, departure.most, time);
         let margin = Real::min(passed, R::stops_short(contract, hazard.limit_beyond, rest));
         if margin > best.margin {
-            best = Verified { plan, margin };
+            let passes = hazard.target;
+            best = Verified {
+                plan,
+                margin,
+                passes,
+            };
         }
     }
     best
+}
+
+/// Metres to spare of a given plan, after one period at the command of `departure`, against some hazards: each is passed
+/// in time, or the ego stops before it.
+pub(crate) fn spare<'h, R: Rules>(
+    contract: &Contract,
+    hazards: impl Iterator<Item = &'h Hazard>,
+    departure: &Departure<f32>,
+    plan: Plan,
+) -> f32 {
+    let time = f32::from(plan.go) * contract.period;
+    let rest = if plan.go > 0 {
+        R::rest(contract, departure.most, time)
+    } else {
+        departure.braking.rest(contract.ego.braking)
+    };
+    hazards.fold(FAR, |least, hazard| {
+        let (clears, speed) = margin::clearing(contract, departure.least, hazard.target);
+        let in_time = clears <= HORIZON && margin::periods(contract, clears) <= plan.go;
+        let stops = R::stops_short(contract, hazard.limit, rest);
+        let margin = if in_time {
+            Real::max(stops, passage_margin::<R>(contract, hazard, clears, speed))
+        } else {
+            stops
+        };
+        Real::min(least, margin)
+    })
 }
 
 /// Metres to spare when the ego has cleared `hazard` at `clears` (s from now) with `ego_speed`.

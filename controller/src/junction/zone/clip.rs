@@ -1,78 +1,77 @@
-//! What two segments have occupied: their rectangle in the (s, t) plane, cut by half-planes.
+//! What two motions have occupied: their rectangle in the (s, t) plane, cut by half-planes.
 
+use super::body::Motion;
 use super::join::Patch;
 use super::{FAR, INFLATION, Span, TOUCHING};
-use crate::geometry::{Footprint, Point, Vector};
-use crate::junction::route::Route;
+use crate::geometry::{Point, Vector};
 use heapless::Vec;
 
 /// Two directions whose cosine is above this point the same way: within 30°.
 const PARALLEL: f32 = 0.866;
 
-/// A vehicle on one segment of its route.
-pub(super) struct Segment {
-    start: Point,
-    direction: Vector,
-    /// Arc length at the start.
-    arc: f32,
-    length: f32,
-    first: bool,
-    last: bool,
-    /// Half the footprint's length and width, inflated.
-    half: (f32, f32),
-}
-
-pub(super) fn segments<const P: usize>(
-    route: &Route<P>,
-    footprint: Footprint,
-) -> impl Iterator<Item = Segment> {
-    let ends = route.points().iter().zip(route.points().iter().skip(1));
-    let arcs = route.arc().iter().zip(route.arc().iter().skip(1));
-    let count = route.points().len();
-    ends.zip(arcs)
-        .enumerate()
-        .map(move |(i, ((&a, &b), (&from, &to)))| Segment {
-            start: a,
-            direction: (b - a) * (1.0 / (to - from)),
-            arc: from,
-            length: to - from,
-            first: i == 0,
-            last: i + 2 == count,
-            half: (
-                0.5 * footprint.length + INFLATION,
-                0.5 * footprint.width + INFLATION,
-            ),
-        })
-}
-
-/// A polygon in the (s, t) plane, both counted from the segments' starts.
+/// A polygon in the (s, t) plane, both counted from the motions' starts.
 type Polygon = Vec<Point, 12>;
 
-/// What of the two segments is occupied.
+/// What of the two motions is occupied.
 // Not inlined, like `cut`: a microcontroller has no stack for all of their polygons at once.
 #[inline(never)]
-pub(super) fn meet(a: &Segment, b: &Segment) -> Option<Patch> {
+pub(super) fn meet(a: &Motion, b: &Motion) -> Option<Patch> {
     let between = a.start - b.start;
     let reach = a.length + b.length + a.half.0 + a.half.1 + b.half.0 + b.half.1;
     if between.dot(&between) > reach * reach {
         return None;
     }
+    let limits = axes(a, b).map(|(axis, radius)| Limit {
+        radius,
+        offset: axis.dot(&between),
+        along: axis.dot(&a.velocity),
+        other_along: -axis.dot(&b.velocity),
+    });
+    let ranges = limits.map(|limit| limit.range(a.length, b.length));
+    let mut bounded = limits.iter().zip(ranges);
+    if bounded.any(|(limit, range)| range.from > limit.radius || range.to < -limit.radius) {
+        return None;
+    }
     let mut polygon = rectangle(a.length, b.length);
-    for (axis, radius) in axes(a, b) {
-        let (along, other_along) = (axis.dot(&a.direction), -axis.dot(&b.direction));
-        let offset = axis.dot(&between);
-        for side in [-1.0, 1.0] {
-            cut(&mut polygon, |p| {
-                radius + side * (offset + along * p.x + other_along * p.y)
-            });
+    for (limit, range) in limits.iter().zip(ranges) {
+        if range.to > limit.radius {
+            cut(&mut polygon, |p| limit.radius - limit.at(p));
+        }
+        if range.from < -limit.radius {
+            cut(&mut polygon, |p| limit.radius + limit.at(p));
         }
     }
     bounds(a, b, &polygon)
 }
 
+/// The rectangles overlap along one axis while |offset + along s + other_along t| ≤ radius.
+#[derive(Clone, Copy)]
+struct Limit {
+    radius: f32,
+    offset: f32,
+    along: f32,
+    other_along: f32,
+}
+
+impl Limit {
+    fn at(&self, p: Point) -> f32 {
+        self.offset + self.along * p.x + self.other_along * p.y
+    }
+
+    /// Its values over the rectangle from (0, 0) to (`width`, `height`).
+    fn range(&self, width: f32, height: f32) -> Span {
+        let (x, y) = (self.along * width, self.other_along * height);
+        let below = |v: f32| if v < 0.0 { v } else { 0.0 };
+        Span {
+            from: self.offset + below(x) + below(y),
+            to: self.offset - below(-x) - below(-y),
+        }
+    }
+}
+
 /// The four directions in which two rectangles can be apart, each with the distance of their
 /// centres from which they are.
-fn axes(a: &Segment, b: &Segment) -> [(Vector, f32); 4] {
+fn axes(a: &Motion, b: &Motion) -> [(Vector, f32); 4] {
     let normal = |v: Vector| Vector::new(-v.y, v.x);
     let radius = |half: (f32, f32), direction: Vector, axis: Vector| {
         half.0 * axis.dot(&direction).abs() + half.1 * axis.perp(&direction).abs()
@@ -102,10 +101,10 @@ fn rectangle(width: f32, height: f32) -> Polygon {
 #[inline(never)]
 fn cut(polygon: &mut Polygon, inside: impl Fn(Point) -> f32) {
     let mut kept = Polygon::new();
-    // A cut by a line adds at most one corner, and 4 + 8 fit in the capacity: `push` never fails.
-    let mut keep = |p| {
-        let _ = kept.push(p);
-    };
+    // A cut by a line adds at most one corner, and 4 + 8 fit in the capacity. If rounding made it more,
+    // the polygon would stay as it is: larger, not smaller.
+    let mut fits = true;
+    let mut keep = |p| fits &= kept.push(p).is_ok();
     let ahead = polygon.iter().cycle().skip(1);
     for (&p, &q) in polygon.iter().zip(ahead) {
         let (at_p, at_q) = (inside(p), inside(q));
@@ -116,10 +115,12 @@ fn cut(polygon: &mut Polygon, inside: impl Fn(Point) -> f32) {
             keep(p + (q - p) * (at_p / (at_p - at_q)));
         }
     }
-    *polygon = kept;
+    if fits {
+        *polygon = kept;
+    }
 }
 
-fn bounds(a: &Segment, b: &Segment, polygon: &Polygon) -> Option<Patch> {
+fn bounds(a: &Motion, b: &Motion, polygon: &Polygon) -> Option<Patch> {
     let first = *polygon.first()?;
     let point = |value| Span {
         from: value,
@@ -135,7 +136,8 @@ fn bounds(a: &Segment, b: &Segment, polygon: &Polygon) -> Option<Patch> {
     let starts = (a.first && ego.from <= TOUCHING) || (b.first && other.from <= TOUCHING);
     let ends =
         (a.last && ego.to >= a.length - TOUCHING) || (b.last && other.to >= b.length - TOUCHING);
-    let parallel = a.direction.dot(&b.direction) > PARALLEL;
+    let turning = a.length == 0.0 || b.length == 0.0;
+    let parallel = !turning && a.direction.dot(&b.direction) > PARALLEL;
     let offset = a.arc - b.arc;
     Some(Patch {
         ego: placed(ego, a),
@@ -153,18 +155,18 @@ fn bounds(a: &Segment, b: &Segment, polygon: &Polygon) -> Option<Patch> {
     })
 }
 
-/// An interval on a segment as arc lengths; one that reaches an end of the route goes on past it.
-fn placed(interval: Span, segment: &Segment) -> Span {
+/// An interval of a motion as arc lengths; one that reaches an end of the route goes on past it.
+fn placed(interval: Span, motion: &Motion) -> Span {
     Span {
-        from: if segment.first && interval.from <= TOUCHING {
+        from: if motion.first && interval.from <= TOUCHING {
             -FAR
         } else {
-            segment.arc + interval.from
+            motion.arc + interval.from
         },
-        to: if segment.last && interval.to >= segment.length - TOUCHING {
+        to: if motion.last && interval.to >= motion.length - TOUCHING {
             FAR
         } else {
-            segment.arc + interval.to
+            motion.arc + interval.to
         },
     }
 }

@@ -4,22 +4,24 @@
 //! two footprints overlap there. On one segment of each route the vehicles move
 //! without turning, so the separating-axis test of the two rectangles is linear
 //! in s and t: the occupied set is the segments' rectangle in the (s, t) plane cut
-//! by eight half-planes, a convex polygon, computed exactly. A [`Zone`] bounds
-//! each connected set of polygons by an interval of s, one of t and one of s − t.
+//! by eight half-planes, a convex polygon, computed exactly. Where a route changes
+//! its direction the vehicle takes all directions in between: turns on the spot, each
+//! taken for one rectangle that covers it. A [`Zone`] bounds each connected set of polygons by an
+//! interval of s, one of t and one of s − t.
 //!
-//! Nothing is sampled, so nothing is missed between samples. Footprints are
-//! inflated by [`INFLATION`] on every side: that covers rounding and the corners'
-//! sweep while a real vehicle turns from one segment's direction to the next
-//! (for bends of up to 14° in one point).
+//! Nothing is sampled, so nothing is missed between samples. Footprints are inflated on every side by
+//! [`INFLATION`] for rounding and by the junction's tolerance.
 
+mod body;
 mod clip;
 mod join;
+mod near;
 
-use crate::geometry::Footprint;
 use crate::junction::conflict::ConflictKind;
-use crate::junction::route::Route;
-use clip::{meet, segments};
-use join::insert;
+pub(crate) use body::{Body, sharp_kink};
+use clip::meet;
+use join::{Patch, insert};
+use near::near_pieces;
 
 /// Most zones of one pair of routes; if the routes meet more often, the last zone covers the rest.
 pub const MAX_ZONES: usize = 3;
@@ -122,27 +124,73 @@ pub(crate) type Zones = [Option<Zone>; MAX_ZONES];
 
 /// The zones of two routes.
 ///
-/// Cost: one distance for each pair of segments, and a polygon of at most 12 corners for
-/// each that is near.
-pub(crate) fn zones<const P: usize>(
-    (ego, ego_footprint): (&Route<P>, Footprint),
-    (other, other_footprint): (&Route<P>, Footprint),
-) -> Zones {
+/// Cost: a few comparisons for each pair of segments that are near each other, and a polygon of at most
+/// 12 corners for each at which the footprints touch.
+pub(crate) fn zones(ego: &Body<'_>, other: &Body<'_>) -> Zones {
     let mut patches = [None; MAX_ZONES];
-    for a in segments(ego, ego_footprint) {
-        for b in segments(other, other_footprint) {
+    near_pieces(ego, other, |i, j| {
+        meet_pieces(&mut patches, (ego, i), (other, j))
+    });
+    patches.map(|patch| patch.map(|patch| patch.zone()))
+}
+
+/// The zone of two vehicles on one route: a lane throughout, with a band that is the same for both.
+pub(crate) fn zone_with_itself(body: &Body<'_>) -> Zone {
+    let mut patches = [None; MAX_ZONES];
+    near_pieces(body, body, |i, j| {
+        // The other half is the same, mirrored.
+        if i <= j {
+            meet_pieces(&mut patches, (body, i), (body, j));
+        }
+    });
+    let apart = body.length() + INFLATION;
+    let widest = patches.iter().flatten().fold(apart, |widest, patch| {
+        let widest = if patch.lead.to > widest {
+            patch.lead.to
+        } else {
+            widest
+        };
+        if -patch.lead.from > widest {
+            -patch.lead.from
+        } else {
+            widest
+        }
+    });
+    let everywhere = Span {
+        from: -FAR,
+        to: FAR,
+    };
+    Zone {
+        ego: everywhere,
+        other: everywhere,
+        lead: Span {
+            from: -widest,
+            to: widest,
+        },
+        kind: ConflictKind::Following,
+    }
+}
+
+/// Adds what is occupied on one segment of each route, or in the turn before it.
+fn meet_pieces(
+    patches: &mut [Option<Patch>; MAX_ZONES],
+    (ego, i): (&Body<'_>, usize),
+    (other, j): (&Body<'_>, usize),
+) {
+    for a in ego.straight(i).into_iter().chain(ego.turns(i)) {
+        for b in other.straight(j).into_iter().chain(other.turns(j)) {
             if let Some(patch) = meet(&a, &b) {
-                insert(&mut patches, patch);
+                insert(patches, patch);
             }
         }
     }
-    patches.map(|patch| patch.map(|patch| patch.zone()))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Point;
+    use crate::geometry::{Footprint, Point};
+    use crate::junction::route::Route;
 
     fn route(points: &[(f32, f32)]) -> Route<16> {
         Route::new(points.iter().map(|&(x, y)| Point::new(x, y))).unwrap()
@@ -151,8 +199,9 @@ mod tests {
     fn conflicts(ego: &[(f32, f32)], other: &[(f32, f32)]) -> std::vec::Vec<Zone> {
         let (ego, other) = (route(ego), route(other));
         let paper = Footprint::PAPER;
-        let found = zones((&ego, paper), (&other, paper));
-        let swapped = zones((&other, paper), (&ego, paper));
+        let [ego, other] = [&ego, &other].map(|r| Body::new(r.polyline(), paper, 0.0));
+        let found = zones(&ego, &other);
+        let swapped = zones(&other, &ego);
         let found: std::vec::Vec<Zone> = found.into_iter().flatten().collect();
         for zone in swapped.into_iter().flatten() {
             let same = |z: &Zone| {
@@ -262,7 +311,9 @@ mod tests {
 
     fn conflicts_unchecked(ego: &[(f32, f32)], other: &[(f32, f32)]) -> std::vec::Vec<Zone> {
         let paper = Footprint::PAPER;
-        let found = zones((&route(ego), paper), (&route(other), paper));
+        let (ego, other) = (route(ego), route(other));
+        let [ego, other] = [&ego, &other].map(|r| Body::new(r.polyline(), paper, 0.0));
+        let found = zones(&ego, &other);
         found.into_iter().flatten().collect()
     }
 }

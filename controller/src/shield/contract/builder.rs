@@ -36,9 +36,15 @@ impl ContractBuilder {
         self
     }
 
-    /// A command takes effect within this time in s, in [0, `period`].
+    /// A command takes effect within this time in s, in [0, `period` − 3 `jitter`].
     pub const fn latency(mut self, latency: f32) -> Self {
         self.numbers.latency = latency;
+        self
+    }
+
+    /// How far (s) a call may be from the grid of periods, either way, in [0, `period`/3].
+    pub const fn jitter(mut self, jitter: f32) -> Self {
+        self.numbers.jitter = jitter;
         self
     }
 
@@ -54,19 +60,19 @@ impl ContractBuilder {
         self
     }
 
-    /// Subtracted from every margin, in m, in [0, 10]: covers the rounding of `f32`.
+    /// Subtracted from every margin, in m, in [0.01, 10]: covers the rounding of `f32`.
     pub const fn slack(mut self, slack: f32) -> Self {
         self.numbers.slack = slack;
         self
     }
 
-    /// [`Ego::max_speed`] in m/s, in (0, 100].
+    /// [`Ego::max_speed`] in m/s, in (0, the others' `max_speed`].
     pub const fn ego_max_speed(mut self, ego_max_speed: f32) -> Self {
         self.numbers.ego.max_speed = ego_max_speed;
         self
     }
 
-    /// [`Ego::acceleration`] in m/s², in (0, 20].
+    /// [`Ego::acceleration`] in m/s², in (0, the others' `acceleration`].
     pub const fn ego_acceleration(mut self, ego_acceleration: f32) -> Self {
         self.numbers.ego.acceleration = ego_acceleration;
         self

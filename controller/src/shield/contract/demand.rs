@@ -100,37 +100,61 @@ const fn first(demands: &[Demand]) -> Option<ContractError> {
     None
 }
 
-const fn everywhere(contract: &Contract) -> [Demand; 14] {
+const fn everywhere(contract: &Contract) -> [Demand; 15] {
     let (ego, other, follower) = (contract.ego, contract.other, contract.follower);
-    let late = ": a command takes effect before the next one";
+    let late = ": a command takes effect before the next one is given, at most two jitters early and one late";
+    // Whoever enters a lane ahead of another may do so sooner, and then slower, than planned.
+    let keeps = ": it accelerates no harder than other.acceleration, and no harder than it or its follower brakes";
+    let fastest = ": it is no faster than the others, whom other.max_speed bounds";
     let commanded = ": it goes no harder than ego.acceleration, the hardest that is commanded";
     // The gap to a leader is smallest at the end only if the leader can brake harder.
     let leader = ": it brakes no harder than other.braking, the hardest braking of a vehicle ahead";
     let hardest = ": it brakes no harder than other.braking, the hardest of all the others";
     let (tolerance, reaction) = (from(0.0, 10.0), from(0.0, 10.0));
     let (speed, acceleration) = (above(0.0, 100.0), above(0.0, 20.0));
+    let brakes = larger(ego.braking, follower.braking);
+    let launch = above(0.0, smaller(other.acceleration, brakes));
     let (go, braking) = (above(0.0, ego.acceleration), above(0.0, other.braking));
     [
         ("period", contract.period, above(0.0, 1.0), ""),
         (
+            "jitter",
+            contract.jitter,
+            from(0.0, contract.period / 3.0),
+            "",
+        ),
+        (
             "latency",
             contract.latency,
-            from(0.0, contract.period),
+            from(0.0, contract.period - 3.0 * contract.jitter),
             late,
         ),
         ("position_error", contract.position_error, tolerance, ""),
         ("speed_error", contract.speed_error, tolerance, ""),
-        ("slack", contract.slack, tolerance, ""),
+        ("slack", contract.slack, from(0.01, 10.0), ""),
         ("other.max_speed", other.max_speed, speed, ""),
         ("other.acceleration", other.acceleration, acceleration, ""),
         ("other.braking", other.braking, acceleration, ""),
-        ("ego.max_speed", ego.max_speed, speed, ""),
-        ("ego.acceleration", ego.acceleration, acceleration, ""),
+        (
+            "ego.max_speed",
+            ego.max_speed,
+            above(0.0, other.max_speed),
+            fastest,
+        ),
+        ("ego.acceleration", ego.acceleration, launch, keeps),
         ("ego.go", ego.go, go, commanded),
         ("ego.braking", ego.braking, braking, leader),
         ("follower.reaction", follower.reaction, reaction, ""),
         ("follower.braking", follower.braking, braking, hardest),
     ]
+}
+
+const fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+const fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
 }
 
 const fn of_precedence(rule: Precedence) -> [Demand; 2] {
@@ -153,17 +177,18 @@ const fn of_turns(contract: &Contract, rule: Precedence) -> [Demand; 2] {
     ]
 }
 
-/// One that goes is seen: it gets faster, in spite of its limiter, than one that may be taken for one at rest.
+/// One that goes is seen: it gets faster, in spite of its limit, than one that may be taken for one at rest.
 const fn unseen(contract: &Contract) -> Option<ContractError> {
-    let (speed, error) = (contract.ego.max_speed, contract.speed_error);
+    let (ego, error) = (contract.ego, contract.speed_error);
     let rest = contract.rest_speed() + 2.0 * error;
-    if rest < speed - error {
+    let held = 2.0 * error + ego.acceleration * contract.switching() + ego.go * contract.period;
+    if rest < ego.max_speed - held {
         return None;
     }
     Some(ContractError {
         field: "ego.max_speed",
-        value: speed,
-        range: above(rest + error, 100.0),
+        value: ego.max_speed,
+        range: above(rest + held, contract.other.max_speed),
         why: ": who takes turns must be seen to go, in spite of speed_error",
     })
 }

@@ -34,9 +34,6 @@ pub use demand::ContractError;
 /// contract.latency = 9.0;
 /// ```
 ///
-/// Where it enters a lane ahead of another, the ego's acceleration must not exceed the others', nor the larger of its
-/// own braking and the follower's, and its speed must not exceed theirs, as in the named contracts.
-/// [`ContractBuilder::build`] does not refuse it (duty U7 of `docs/manual.md`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -44,6 +41,7 @@ pub use demand::ContractError;
 pub struct Contract {
     pub(super) period: f32,
     pub(super) latency: f32,
+    pub(super) jitter: f32,
     pub(super) position_error: f32,
     pub(super) speed_error: f32,
     pub(super) slack: f32,
@@ -60,11 +58,12 @@ pub struct Contract {
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Ego {
-    /// No proposal accelerates the ego at or above this speed, in m/s, in (0, 100]; a plan that is carried out may.
+    /// No command accelerates the ego beyond this speed, in m/s, in (0, the others' `max_speed`].
     /// A limiter may keep the vehicle from going faster, and errs by `speed_error` at most. The guarantee holds with
     /// a limiter and without one.
     pub max_speed: f32,
-    /// Largest acceleration that is commanded, in m/s², in (0, 20].
+    /// Largest acceleration that is commanded, in m/s², in (0, the others' `acceleration`], and no larger than the
+    /// larger of `braking` and the follower's.
     pub acceleration: f32,
     /// Acceleration that it achieves, below its limiter's speed, when it must clear a zone, in m/s², in (0, `acceleration`].
     pub go: f32,
@@ -142,6 +141,7 @@ impl Contract {
     pub const WORST_CASE: Self = Self {
         period: 0.1,
         latency: 0.1,
+        jitter: 0.0,
         position_error: 0.0,
         speed_error: 0.0,
         slack: 0.01,
@@ -185,10 +185,29 @@ impl Contract {
         self.period
     }
 
-    /// A command takes effect within this time in s, in [0, `period`]; until then the one before it does.
+    /// A command takes effect within this time in s, in [0, `period` − 3 `jitter`]; until then the one before it does.
     #[must_use]
     pub const fn latency(&self) -> f32 {
         self.latency
+    }
+
+    /// How far (s) a call may be from the grid of periods, either way, in [0, `period`/3].
+    #[must_use]
+    pub const fn jitter(&self) -> f32 {
+        self.jitter
+    }
+
+    /// How long (s) it is uncertain which of two commands is in effect, counted from the moment at which the second may
+    /// be given at the earliest.
+    #[must_use]
+    pub const fn switching(&self) -> f32 {
+        self.latency + 2.0 * self.jitter
+    }
+
+    /// The least time (s) from a call that is on time to the next one.
+    #[must_use]
+    pub const fn shortest_period(&self) -> f32 {
+        self.period - self.jitter
     }
 
     /// Largest error of a sensed arc length in m, the ego's or another's, in [0, 10].
@@ -203,7 +222,7 @@ impl Contract {
         self.speed_error
     }
 
-    /// Subtracted from every margin, in m, in [0, 10]: covers the rounding of `f32`.
+    /// Subtracted from every margin, in m, in [0.01, 10]: covers the rounding of `f32`.
     #[must_use]
     pub const fn slack(&self) -> f32 {
         self.slack
@@ -273,7 +292,19 @@ mod tests {
             worst(|c| c.position_error = -1.0),
             "position_error = -1 is outside [0, 10]",
         );
-        begins(worst(|c| c.slack = 11.0), "slack = 11 is outside [0, 10]");
+        begins(worst(|c| c.slack = 0.0), "slack = 0 is outside [0.01, 10]");
+        begins(
+            worst(|c| c.jitter = 0.01),
+            "latency = 0.1 is outside [0, 0.07",
+        );
+        begins(
+            worst(|c| c.ego.acceleration = 3.5),
+            "ego.acceleration = 3.5 is outside (0, 3]: ",
+        );
+        begins(
+            worst(|c| c.ego.max_speed = 16.0),
+            "ego.max_speed = 16 is outside (0, 15]: ",
+        );
         begins(
             worst(|c| c.ego.braking = 9.0),
             "ego.braking = 9 is outside (0, 8]: ",
@@ -318,7 +349,7 @@ mod tests {
         );
         begins(
             stop(|contract, _| contract.speed_error = 6.0),
-            "ego.max_speed = 15 is outside (18.075, 100]: ",
+            "ego.max_speed = 15 is outside (24.675, 15]: ",
         );
     }
 }

@@ -9,6 +9,8 @@ use serde::Deserialize;
 pub(super) struct Numbers {
     period: f32,
     latency: f32,
+    #[serde(default)]
+    jitter: f32,
     position_error: f32,
     speed_error: f32,
     slack: f32,
@@ -26,6 +28,7 @@ impl TryFrom<Numbers> for Contract {
         ContractBuilder::new(Self {
             period: read.period,
             latency: read.latency,
+            jitter: read.jitter,
             position_error: read.position_error,
             speed_error: read.speed_error,
             slack: read.slack,

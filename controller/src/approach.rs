@@ -1,0 +1,326 @@
+//! One intersection, from entry to exit: what a driver sees there, through policy and shield, becomes a decision.
+
+use crate::decision::{Decision, Prediction};
+use crate::fault::Fault;
+use crate::instant::Instant;
+use crate::junction::{ConflictKind, Junction, MAX_OTHERS, Path, PathId, RouteConflict, Way};
+use crate::observation::{Observation, Track, Vehicle};
+use crate::policy::Policy;
+use crate::policy::pair::{Pair, Part, VehicleState};
+use crate::policy::svo;
+use crate::policy::traffic::{NearbyVehicle, TrafficContext};
+use crate::shield::{Contract, EnterError, NotReady, Plan, Shield, door};
+use heapless::Vec;
+
+/// Acceleration (m/s²) that is proposed when there is nobody left to meet.
+pub const FREE: f32 = 1.0;
+
+/// What drives a vehicle, at every intersection: `'w` is the life of the policy's weights.
+#[derive(Clone, Copy, Debug)]
+pub struct Drive<'w> {
+    policy: Policy<'w>,
+    contract: Contract,
+    part: Part,
+}
+
+impl<'w> Drive<'w> {
+    /// Drives with `policy` within `contract`; `part` is the one that a joint policy gives the ego.
+    #[must_use]
+    pub const fn new(policy: Policy<'w>, contract: Contract, part: Part) -> Self {
+        Self {
+            policy,
+            contract,
+            part,
+        }
+    }
+
+    /// Begins to approach `junction` on `path`, and watches up to [`MAX_OTHERS`] others that matter.
+    ///
+    /// # Errors
+    /// See [`EnterError`].
+    pub fn enter<'j, const R: usize, const P: usize, const E: usize>(
+        &self,
+        junction: &'j Junction<R, P, E>,
+        path: PathId,
+    ) -> Result<Approach<'j, 'w>, EnterError> {
+        self.enter_with_room(junction, path)
+    }
+
+    /// [`Drive::enter`], watching up to `N` others, 1 to [`MAX_OTHERS`].
+    ///
+    /// # Errors
+    /// See [`EnterError`].
+    pub fn enter_with_room<'j, const N: usize, const R: usize, const P: usize, const E: usize>(
+        &self,
+        junction: &'j Junction<R, P, E>,
+        path: PathId,
+    ) -> Result<Approach<'j, 'w, N>, EnterError> {
+        Ok(Approach {
+            policy: self.policy,
+            part: self.part,
+            shield: Shield::enter(self.contract, junction, path)?,
+            orientations: Vec::new(),
+            around: TrafficContext::default(),
+            prediction: None,
+        })
+    }
+}
+
+/// One vehicle on its way through one junction, which it borrows.
+///
+/// Plan, precedence, tracks and SVO live as long as it: the next intersection begins with a new one.
+#[derive(Clone, Debug)]
+pub struct Approach<'j, 'w, const N: usize = MAX_OTHERS> {
+    policy: Policy<'w>,
+    part: Part,
+    shield: Shield<'j, N>,
+    /// The ego's SVO towards each track at the last step.
+    orientations: Vec<(u16, f32), N>,
+    /// See [`Approach::set_traffic`].
+    around: TrafficContext,
+    prediction: Option<Prediction>,
+}
+
+/// A track on a path that has a zone ahead with the ego's.
+struct Nearby<'j> {
+    number: u16,
+    vehicle: Vehicle,
+    path: &'j Path,
+    conflict: &'j RouteConflict,
+}
+
+impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
+    /// The shield.
+    #[must_use]
+    pub const fn shield(&self) -> &Shield<'j, N> {
+        &self.shield
+    }
+
+    /// The plan that the shield falls back on; none is no guarantee.
+    #[must_use]
+    pub fn plan(&self) -> Option<Plan> {
+        self.shield.plan()
+    }
+
+    /// Drives with `policy` from the next decision on.
+    pub const fn set_policy(&mut self, policy: Policy<'w>) {
+        self.policy = policy;
+    }
+
+    /// Drives within `contract` from the next decision on. The remembered plan is kept if it is safe under it.
+    ///
+    /// # Errors
+    /// [`EnterError::PositionError`]; nothing is changed then.
+    pub fn set_contract(&mut self, contract: Contract) -> Result<(), EnterError> {
+        self.shield.set_contract(contract)
+    }
+
+    /// Tells the policy of traffic that is not on the junction's paths, for the decisions to come; the shield
+    /// considers the tracks alone.
+    pub const fn set_traffic(&mut self, around: TrafficContext) {
+        self.around = around;
+    }
+
+    /// See [`Shield::forget`].
+    pub fn forget(&mut self, number: u16) {
+        self.shield.forget(number);
+    }
+
+    /// Whether a plan is safe before control is handed over. See [`Shield::ready`].
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn ready(&self, now: Instant, observation: &Observation<'_>) -> Result<f32, NotReady> {
+        self.shield.ready(now, observation)
+    }
+
+    /// The ego's acceleration for the period that begins `now`. To be called once a period.
+    ///
+    /// The policy is asked about the nearest `N` of those whom the ego has yet to meet, the most restrictive of its
+    /// proposals passes to the shield, and the shield considers everybody at once. With nobody left to
+    /// meet, the ego accelerates gently up to the contract's speed. See [`Shield::filter`].
+    ///
+    /// Cost: at most `N` passes through the network, and the shield's. The
+    /// acceleration is finite and within the contract's, whatever the bits of the observation.
+    pub fn decide(&mut self, now: Instant, observation: &Observation<'_>) -> Decision {
+        let mut proposal = 0.0;
+        if self.shield.is_new(now) {
+            // The shield finds a fault again and carries on with its plan.
+            (proposal, self.prediction) = self.ask(observation).unwrap_or((0.0, None));
+        }
+        Decision {
+            prediction: self.prediction,
+            ..self.shield.filter(now, observation, proposal)
+        }
+    }
+
+    /// What the policy alone would do (m/s², within ± 3): to measure what the shield costs, never to drive.
+    ///
+    /// To be called once a period instead of [`Approach::decide`]; 0 if the ego's state has a fault.
+    ///
+    /// Cost: at most `N` passes through the network. Finite and within ± 3.
+    pub fn proposal(&mut self, observation: &Observation<'_>) -> f32 {
+        self.ask(observation)
+            .map_or(0.0, |(acceleration, _)| acceleration)
+    }
+
+    /// What the policy proposes. Not inlined, because its stack is free again when the shield needs its own.
+    #[inline(never)]
+    fn ask(&mut self, observation: &Observation<'_>) -> Result<(f32, Option<Prediction>), Fault> {
+        let (way, contract) = (self.shield.way(), self.shield.contract());
+        let ego = door::ego(way, contract, &observation.ego)?;
+        let nearby = nearby::<N>(way, contract, &ego, observation.tracks);
+        Ok(self.propose(way, &ego, &nearby))
+    }
+
+    fn propose(
+        &mut self,
+        way: Way<'j>,
+        ego: &Vehicle,
+        nearby: &Vec<Nearby<'j>, N>,
+    ) -> (f32, Option<Prediction>) {
+        let mut proposal = (FREE, None);
+        let Some(mine) = way.path(way.ego()) else {
+            return proposal;
+        };
+        for other in nearby.iter().filter(|other| other.meets(ego)) {
+            let traffic = traffic(ego, nearby, other.number).nearest(self.around);
+            let last_svo = self.orientation(other.number);
+            let pair = Pair {
+                ego: VehicleState {
+                    leader: traffic.leader,
+                    crosser: traffic.crosser,
+                    ..vehicle_state(ego, mine, other.conflict.ego_conflict)
+                },
+                other: vehicle_state(&other.vehicle, other.path, other.conflict.other_conflict),
+                kind: other.conflict.kind,
+                right_of_way: other.conflict.right_of_way,
+                part: self.part,
+                last_svo,
+            };
+            let svo = pair.svo();
+            self.remember(other.number, svo, nearby);
+            let [acceleration, expected] = self.policy.act(&pair);
+            if acceleration < proposal.0 || proposal.1.is_none() {
+                let prediction = Prediction {
+                    other: other.number,
+                    svo,
+                    acceleration: expected,
+                };
+                proposal = (acceleration, Some(prediction));
+            }
+        }
+        proposal
+    }
+
+    /// The ego's SVO towards track `number` at the last step; the first one, if there was none.
+    fn orientation(&self, number: u16) -> f32 {
+        let known = self
+            .orientations
+            .iter()
+            .find(|&&(known, _)| known == number);
+        known.map_or(svo::FIRST, |&(_, svo)| svo)
+    }
+
+    /// Remembers the SVO towards track `number`, in the place of one that is not nearby if there is no other.
+    fn remember(&mut self, number: u16, svo: f32, nearby: &Vec<Nearby<'j>, N>) {
+        let there = |number| nearby.iter().any(|other| other.number == number);
+        self.orientations.retain(|&(known, _)| known != number);
+        if self.orientations.is_full() {
+            self.orientations.retain(|&(known, _)| there(known));
+        }
+        // As many as there are places are nearby, this one among them.
+        let _ = self.orientations.push((number, svo));
+    }
+}
+
+impl Nearby<'_> {
+    /// Whether the two have yet to meet: in some zone neither has passed it. One that is ahead in a
+    /// lane that they share from the start has been met once either has entered that lane: it leads.
+    fn meets(&self, ego: &Vehicle) -> bool {
+        let conflict = self.conflict;
+        conflict.zones().any(|zone| {
+            let (ego_end, other_end) = match zone.kind {
+                ConflictKind::Following => (conflict.ego_conflict, conflict.other_conflict),
+                _ => (zone.ego.to, zone.other.to),
+            };
+            ego.s < ego_end && self.vehicle.s < other_end
+        })
+    }
+
+    /// Metres that the ego still has to where the two meet; negative past it.
+    fn away(&self, ego: &Vehicle) -> f32 {
+        self.conflict.ego_conflict - ego.s
+    }
+}
+
+/// The tracks that have a zone ahead with the ego, on each of their paths: of more than `N` the nearest. A track with a
+/// fault is not there.
+fn nearby<'j, const N: usize>(
+    way: Way<'j>,
+    contract: &Contract,
+    ego: &Vehicle,
+    tracks: &[Track],
+) -> Vec<Nearby<'j>, N> {
+    let mut nearest: Vec<Nearby<'j>, N> = Vec::new();
+    let candidates = tracks
+        .iter()
+        .flat_map(|track| track.candidates().map(move |candidate| (track, candidate)));
+    for (track, candidate) in candidates {
+        let there = way.path(candidate.path).zip(way.conflict(candidate.path));
+        let Some((path, conflict)) = there else {
+            continue;
+        };
+        let Ok(vehicle) = door::track(way, contract, track, candidate) else {
+            continue;
+        };
+        let ahead = |zone: &crate::Zone| ego.s < zone.ego.to && vehicle.s < zone.other.to;
+        if !conflict.zones().any(ahead) {
+            continue;
+        }
+        let mut found = Nearby {
+            number: track.number,
+            vehicle,
+            path,
+            conflict,
+        };
+        if nearest.is_full() {
+            for other in &mut nearest {
+                if other.away(ego) > found.away(ego) {
+                    core::mem::swap(other, &mut found);
+                }
+            }
+        } else {
+            // There is room.
+            let _ = nearest.push(found);
+        }
+    }
+    nearest
+}
+
+fn vehicle_state(vehicle: &Vehicle, path: &Path, conflict: f32) -> VehicleState {
+    VehicleState {
+        pose: vehicle.pose,
+        exit: path.exit(),
+        speed: vehicle.speed,
+        distance: conflict - vehicle.s,
+        footprint: path.footprint(),
+        leader: None,
+        crosser: None,
+    }
+}
+
+/// What all the others but track `except` are to the ego.
+fn traffic<const N: usize>(
+    ego: &Vehicle,
+    nearby: &Vec<Nearby<'_>, N>,
+    except: u16,
+) -> TrafficContext {
+    let others = nearby.iter().filter(|other| other.number != except);
+    let there = others.map(|other| NearbyVehicle {
+        conflict: other.conflict,
+        s: other.vehicle.s,
+        speed: other.vehicle.speed,
+    });
+    TrafficContext::new(ego.s, there)
+}

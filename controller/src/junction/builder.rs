@@ -1,0 +1,328 @@
+//! Builds a junction from routes, footprints, lines and rights of way.
+
+use crate::geometry::Footprint;
+use crate::junction::conflict::{ConflictKind, RightOfWay, RouteConflict};
+use crate::junction::error::JunctionError;
+use crate::junction::meeting::within;
+use crate::junction::path::{Class, MAX_FOOTPRINT, MAX_PATH_LENGTH, Path, PathId};
+use crate::junction::polyline::Polyline;
+use crate::junction::prepared::Junction;
+use crate::junction::route::Route;
+use crate::junction::zone::{Body, sharp_kink};
+use heapless::Vec;
+
+/// Largest tolerance of a junction in metres.
+pub const MAX_TOLERANCE: f32 = 1.0;
+
+/// The tolerance (m) of a junction that was not given one.
+const TOLERANCE: f32 = 0.1;
+
+/// Collects what a [`Junction`] is built from. A call that returns an error changes nothing.
+#[derive(Clone, Debug)]
+pub struct JunctionBuilder<const R: usize, const P: usize, const E: usize> {
+    /// Its conflicts hold nothing but rights of way until it is built.
+    junction: Junction<R, P, E>,
+    /// The lines that were given, for each path.
+    lines: Vec<Option<f32>, R>,
+}
+
+impl<const R: usize, const P: usize, const E: usize> Default for JunctionBuilder<R, P, E> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
+    /// A builder without paths.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            junction: Junction {
+                paths: Vec::new(),
+                points: Vec::new(),
+                arc: Vec::new(),
+                conflicts: [[RouteConflict::NONE; R]; E],
+                tolerance: TOLERANCE,
+            },
+            lines: Vec::new(),
+        }
+    }
+
+    /// How far (m) any point of a vehicle's footprint may be from where it is on its route:
+    /// [0, [`MAX_TOLERANCE`]], 0.1 unless it is set. All zones are larger by it.
+    pub const fn tolerance(&mut self, tolerance: f32) -> &mut Self {
+        self.junction.tolerance = tolerance;
+        self
+    }
+
+    /// Adds a path along `route` for vehicles of `class`, whose largest footprint is `footprint`.
+    ///
+    /// The first `E` paths are those that can be entered. Cost: O(points).
+    ///
+    /// # Errors
+    /// [`JunctionError::TooManyPaths`], [`JunctionError::TooManyPoints`], [`JunctionError::Footprint`],
+    /// [`JunctionError::TooLong`], [`JunctionError::Kink`].
+    pub fn path<const Q: usize>(
+        &mut self,
+        route: &Route<Q>,
+        class: Class,
+        footprint: Footprint,
+    ) -> Result<PathId, JunctionError> {
+        let id = self.next_id()?;
+        checked_footprint(id, footprint)?;
+        checked_polyline(id, route.polyline())?;
+        let start = self.junction.points.len();
+        let end = start + route.points().len();
+        let full = JunctionError::TooManyPoints {
+            path: id,
+            points: end,
+            capacity: P,
+        };
+        if end > P {
+            return Err(full);
+        }
+        let points = self.junction.points.extend_from_slice(route.points());
+        points.map_err(|_| full)?;
+        let arc = self.junction.arc.extend_from_slice(route.arc());
+        arc.map_err(|_| full)?;
+        self.push(Path {
+            class,
+            footprint,
+            exit: route.pose(route.length()).direction,
+            line: 0.0,
+            range: start..end,
+        })?;
+        Ok(id)
+    }
+
+    /// Adds a path along the points of path `of`, for another class of vehicles. It takes no points.
+    ///
+    /// # Errors
+    /// [`JunctionError::UnknownPath`], [`JunctionError::TooManyPaths`], [`JunctionError::Footprint`].
+    pub fn variant(
+        &mut self,
+        of: PathId,
+        class: Class,
+        footprint: Footprint,
+    ) -> Result<PathId, JunctionError> {
+        let path = self.known(of)?.clone();
+        let id = self.next_id()?;
+        checked_footprint(id, footprint)?;
+        self.push(Path {
+            class,
+            footprint,
+            ..path
+        })?;
+        Ok(id)
+    }
+
+    /// Sets the line of `path`: the arc length `s` (m) of the footprint's centre while the vehicle waits there.
+    ///
+    /// Unless it is set, the line is where the footprint comes to the first zone of kind
+    /// [`ConflictKind::Crossing`] or [`ConflictKind::Merging`] with any other path; the end of the path
+    /// if it has none.
+    ///
+    /// # Errors
+    /// [`JunctionError::UnknownPath`]; [`JunctionError::Line`] if `s` is not in [0, length].
+    pub fn line(&mut self, path: PathId, s: f32) -> Result<(), JunctionError> {
+        self.known(path)?;
+        let length = self.junction.polyline(path).map_or(0.0, Polyline::length);
+        if !(s >= 0.0 && s <= length) {
+            return Err(JunctionError::Line {
+                path,
+                value: s,
+                length,
+            });
+        }
+        if let Some(line) = self.lines.get_mut(path.index()) {
+            *line = Some(s);
+        }
+        Ok(())
+    }
+
+    /// Says that vehicles of path `first` go before those of path `second` if they arrive at once.
+    ///
+    /// The last call for two paths counts.
+    ///
+    /// # Errors
+    /// [`JunctionError::UnknownPath`]; [`JunctionError::RightOfWay`] if it is one path.
+    pub fn right_of_way(&mut self, first: PathId, second: PathId) -> Result<(), JunctionError> {
+        self.known(first)?;
+        self.known(second)?;
+        if first == second {
+            return Err(JunctionError::RightOfWay { path: first });
+        }
+        let mut set = |ego: PathId, other: PathId, right_of_way| {
+            if let Some(conflict) = self.slot(ego.index(), other.index()) {
+                conflict.right_of_way = right_of_way;
+            }
+        };
+        set(first, second, RightOfWay::Ego);
+        set(second, first, RightOfWay::Other);
+        Ok(())
+    }
+
+    /// The junction.
+    ///
+    /// Cost: a look at each two paths, and polygons where they are near each other: about
+    /// 1 ms on a desktop for 12 paths of 64 points.
+    ///
+    /// # Errors
+    /// [`JunctionError::NoPaths`], [`JunctionError::Tolerance`].
+    // Not inlined, so that the stack of `fill` is free again when the junction is moved.
+    #[inline(never)]
+    pub fn build(mut self) -> Result<Junction<R, P, E>, JunctionError> {
+        let value = self.junction.tolerance;
+        if !(value >= 0.0 && value <= MAX_TOLERANCE) {
+            return Err(JunctionError::Tolerance { value });
+        }
+        if self.junction.paths.is_empty() {
+            return Err(JunctionError::NoPaths);
+        }
+        self.fill();
+        Ok(self.junction)
+    }
+
+    /// Fills in conflicts and lines.
+    // Not inlined, like `meet`: it works where the builder is, and no copy of a row is on the stack.
+    #[inline(never)]
+    fn fill(&mut self) {
+        for path in &mut self.junction.paths {
+            path.line = f32::INFINITY;
+        }
+        let count = self.junction.paths.len();
+        for a in 0..count {
+            for b in a..count {
+                if let Some(conflict) = self.between(a, b) {
+                    self.keep(a, b, &conflict);
+                }
+            }
+        }
+        for i in 0..count {
+            self.settle_line(i);
+        }
+    }
+
+    #[inline(never)]
+    fn between(&self, a: usize, b: usize) -> Option<RouteConflict> {
+        let body = |i: usize| {
+            let path = self.junction.paths.get(i)?;
+            let points = self.junction.points.get(path.range.clone())?;
+            let arc = self.junction.arc.get(path.range.clone())?;
+            let polyline = Polyline::new(points, arc);
+            Some(Body::new(polyline, path.footprint, self.junction.tolerance))
+        };
+        Some(if a == b {
+            RouteConflict::with_itself(&body(a)?)
+        } else {
+            RouteConflict::between(&body(a)?, &body(b)?)
+        })
+    }
+
+    /// Keeps how paths `a` and `b` meet for each of the two that can be entered, and for their lines.
+    fn keep(&mut self, a: usize, b: usize, conflict: &RouteConflict) {
+        if a != b {
+            self.lower_line(
+                a,
+                conflict
+                    .zones()
+                    .filter(|z| stops(z.kind))
+                    .map(|z| z.ego.from),
+            );
+            self.lower_line(
+                b,
+                conflict
+                    .zones()
+                    .filter(|z| stops(z.kind))
+                    .map(|z| z.other.from),
+            );
+            self.store(b, a, || conflict.swapped());
+        }
+        self.store(a, b, || *conflict);
+    }
+
+    fn store(&mut self, ego: usize, other: usize, conflict: impl Fn() -> RouteConflict) {
+        if let Some(slot) = self.slot(ego, other) {
+            let right_of_way = slot.right_of_way;
+            *slot = RouteConflict {
+                right_of_way,
+                ..conflict()
+            };
+        }
+    }
+
+    fn lower_line(&mut self, i: usize, entries: impl Iterator<Item = f32>) {
+        if let Some(path) = self.junction.paths.get_mut(i) {
+            for entry in entries {
+                if entry < path.line {
+                    path.line = entry;
+                }
+            }
+        }
+    }
+
+    fn settle_line(&mut self, i: usize) {
+        let given = self.lines.get(i).copied().flatten();
+        if let Some(path) = self.junction.paths.get_mut(i) {
+            let last = path.range.end.saturating_sub(1);
+            let length = self.junction.arc.get(last).copied().unwrap_or(0.0);
+            path.line = given.unwrap_or(within(path.line, length));
+        }
+    }
+
+    fn slot(&mut self, ego: usize, other: usize) -> Option<&mut RouteConflict> {
+        self.junction.conflicts.get_mut(ego)?.get_mut(other)
+    }
+
+    fn known(&self, path: PathId) -> Result<&Path, JunctionError> {
+        self.junction.path(path).ok_or(JunctionError::UnknownPath {
+            path,
+            paths: self.junction.paths.len(),
+        })
+    }
+
+    /// The number of the next path.
+    fn next_id(&self) -> Result<PathId, JunctionError> {
+        let capacity = R.min(256);
+        let next = self.junction.paths.len();
+        match u8::try_from(next) {
+            Ok(number) if next < R => Ok(PathId::new(number)),
+            _ => Err(JunctionError::TooManyPaths { capacity }),
+        }
+    }
+
+    fn push(&mut self, path: Path) -> Result<(), JunctionError> {
+        let full = JunctionError::TooManyPaths { capacity: R };
+        self.junction.paths.push(path).map_err(|_| full)?;
+        self.lines.push(None).map_err(|_| full)
+    }
+}
+
+/// Whether a vehicle waits for the others before a zone of this kind.
+const fn stops(kind: ConflictKind) -> bool {
+    matches!(kind, ConflictKind::Crossing | ConflictKind::Merging)
+}
+
+fn checked_footprint(path: PathId, footprint: Footprint) -> Result<(), JunctionError> {
+    let Footprint { length, width } = footprint;
+    let good = |side: f32| side > 0.0 && side <= MAX_FOOTPRINT;
+    if good(length) && good(width) {
+        return Ok(());
+    }
+    Err(JunctionError::Footprint {
+        path,
+        length,
+        width,
+    })
+}
+
+fn checked_polyline(path: PathId, polyline: Polyline<'_>) -> Result<(), JunctionError> {
+    let length = polyline.length();
+    if length > MAX_PATH_LENGTH {
+        return Err(JunctionError::TooLong { path, length });
+    }
+    match sharp_kink(polyline) {
+        Some((at, degrees)) => Err(JunctionError::Kink { path, at, degrees }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,322 @@
+//! The other vehicles that matter, from when they are first seen until they have certainly left.
+
+use super::bounds::Bounds;
+use super::contract::Contract;
+use super::door;
+use super::precedence::{PairMemory, ZoneSet, has};
+use super::rules::Rules;
+use super::waiting::{RestState, Sighting};
+use crate::fault::Fault;
+use crate::instant::Instant;
+use crate::junction::zone::{FAR, Zone};
+use crate::junction::{PathId, RouteConflict, Way};
+use crate::observation::{Candidate, Observation, Track, Vehicle};
+use heapless::Vec;
+
+/// A tracked vehicle on one of its candidate paths, which has a zone ahead with the ego's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Other {
+    pub(crate) number: u16,
+    pub(crate) path: PathId,
+    /// As it was sensed last, at `at`.
+    s: f32,
+    speed: f32,
+    at: Instant,
+    /// Where it is now.
+    pub(crate) bounds: Bounds,
+    /// It is in the present observation.
+    pub(crate) seen: bool,
+    /// What is new of it.
+    pub(crate) news: News,
+    /// Lanes that the plan in force enters ahead of it, with the gap that it needs.
+    pub(crate) counted: ZoneSet,
+    /// Lanes in which the ego is ahead of it, and it has had the gap to keep its distance.
+    pub(crate) settled: ZoneSet,
+    /// Who goes first.
+    pub(crate) pair: PairMemory,
+    /// The zones in which the ego has precedence over it.
+    pub(crate) claims: ZoneSet,
+}
+
+/// What is new of another in the present observation. Whatever it is, the remembered plan has not been verified against it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum News {
+    None,
+    /// It was not there before.
+    Appeared,
+    /// It moved beyond the contract's bounds.
+    Broke,
+}
+
+/// What was wrong with an observation.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Findings {
+    /// Track that moved beyond the contract's bounds.
+    pub(crate) breach: Option<u16>,
+    pub(crate) fault: Option<Fault>,
+    /// Zones that nobody watches.
+    pub(crate) closed: Option<Closed>,
+}
+
+/// Zones that the ego must not enter, because somebody who is not watched may be there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Closed {
+    /// Track number of whom there is no room for.
+    pub(crate) number: u16,
+    /// Arc length (m) of the ego at which the first of them begins.
+    pub(crate) from: f32,
+}
+
+impl Findings {
+    fn close(&mut self, number: u16, from: f32) {
+        if self.closed.is_none_or(|closed| from < closed.from) {
+            self.closed = Some(Closed { number, from });
+        }
+    }
+}
+
+/// The others that matter, at most `N`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Tracks<const N: usize>(Vec<Other, N>);
+
+impl<const N: usize> Tracks<N> {
+    pub(crate) const fn new() -> Self {
+        Self(Vec::new())
+    }
+
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &Other> {
+        self.0.iter()
+    }
+
+    pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = &mut Other> {
+        self.0.iter_mut()
+    }
+
+    /// Nobody with this number is there any more.
+    pub(crate) fn forget(&mut self, number: u16) {
+        self.0.retain(|other| other.number != number);
+    }
+
+    /// Where everybody may be at `now`, if nothing is seen.
+    pub(crate) fn coast<R: Rules>(&mut self, contract: &Contract, now: Instant) {
+        for other in &mut self.0 {
+            other.seen = false;
+            other.bounds = other.coasting::<R>(contract, now);
+        }
+    }
+
+    /// Notes what is seen at `now`: whoever is missing coasts, whoever appears is added, whoever has left is dropped.
+    ///
+    /// Cost: O(tracks × N).
+    pub(crate) fn note<R: Rules>(
+        &mut self,
+        contract: &Contract,
+        way: Way<'_>,
+        now: Instant,
+        ego: &Vehicle,
+        seen: &Observation<'_>,
+    ) -> Findings {
+        let mut findings = Findings::default();
+        for other in &mut self.0 {
+            other.news = News::None;
+        }
+        self.coast::<R>(contract, now);
+        for track in seen.tracks {
+            let mut others = self.0.iter();
+            if others.any(|other| other.seen && other.number == track.number) {
+                findings.fault = findings.fault.or(Some(door::twice(track.number)));
+            }
+            // A candidate that is left out is excluded by what was seen.
+            self.0.retain(|other| {
+                other.number != track.number || other.seen || track.may_be_on(other.path)
+            });
+            for candidate in track.candidates() {
+                self.note_candidate::<R>(
+                    (contract, way),
+                    (now, ego),
+                    (track, candidate),
+                    &mut findings,
+                );
+            }
+        }
+        let passed = |zone: &Zone| ego.s - contract.position_error >= zone.ego.to;
+        self.0.retain(|other| {
+            let conflict = way.conflict(other.path);
+            conflict.is_some_and(|conflict| other.matters::<R>(conflict, passed))
+        });
+        findings
+    }
+
+    fn note_candidate<R: Rules>(
+        &mut self,
+        (contract, way): (&Contract, Way<'_>),
+        (now, ego): (Instant, &Vehicle),
+        (track, candidate): (&Track, Candidate),
+        findings: &mut Findings,
+    ) {
+        let (number, path) = (track.number, candidate.path);
+        let known = |other: &&mut Other| other.number == number && other.path == path;
+        let checked = door::track(way, contract, track, candidate);
+        let error = contract.position_error;
+        match (self.0.iter_mut().find(known), checked) {
+            // Two vehicles of one number on one path: there is no place to watch the second one.
+            (Some(other), _) if other.seen => {
+                if let Some(from) = unplaced(way, path, ego.s - error) {
+                    findings.close(number, from);
+                }
+            }
+            (Some(other), Ok(vehicle)) => {
+                if !other.bounds.allow(contract, vehicle.s, vehicle.speed) {
+                    findings.breach = findings.breach.or(Some(number));
+                    other.news = News::Broke;
+                    (other.counted, other.settled) = (0, 0);
+                }
+                other.see(contract, &vehicle, now);
+            }
+            // It coasts.
+            (Some(_), Err(fault)) => findings.fault = findings.fault.or(Some(fault)),
+            (None, Ok(vehicle)) => {
+                let other = Other::new(contract, number, path, &vehicle, now);
+                let entry = way.conflict(path).and_then(|conflict| {
+                    let passed = |zone: &Zone| ego.s - error >= zone.ego.to;
+                    other.entry::<R>(conflict, passed)
+                });
+                if let Some(entry) = entry {
+                    self.add::<R>(way, ego, (other, entry), findings);
+                }
+            }
+            // Nobody knows where it is: its zones may be occupied.
+            (None, Err(fault)) => {
+                findings.fault = findings.fault.or(Some(fault));
+                if let Some(from) = unplaced(way, path, ego.s - error) {
+                    findings.close(number, from);
+                }
+            }
+        }
+    }
+
+    /// Adds a newcomer whose first zone the ego enters at `entry` (m). Without room the one whose zones are farthest
+    /// is not watched.
+    fn add<R: Rules>(
+        &mut self,
+        way: Way<'_>,
+        ego: &Vehicle,
+        (mut newcomer, mut entry): (Other, f32),
+        findings: &mut Findings,
+    ) {
+        if self.0.is_full() {
+            let mut replace = |other: &mut Other| {
+                let passed = |zone: &Zone| ego.s >= zone.ego.to;
+                let conflict = way.conflict(other.path);
+                let its = conflict.and_then(|conflict| other.entry::<R>(conflict, passed));
+                let its = its.unwrap_or(FAR);
+                if its > entry {
+                    core::mem::swap(other, &mut newcomer);
+                    entry = its;
+                }
+            };
+            self.0.iter_mut().for_each(&mut replace);
+            if entry < FAR {
+                findings.close(newcomer.number, entry);
+            }
+            return;
+        }
+        // There is room.
+        let _ = self.0.push(newcomer);
+    }
+}
+
+/// Where (m) the ego enters the first zone that it has not passed at `ego` (m) with somebody of whom no more is known
+/// than the path, or not even that.
+fn unplaced(way: Way<'_>, path: PathId, ego: f32) -> Option<f32> {
+    let first = |conflict: &RouteConflict| {
+        let ahead = conflict.zones().filter(|zone| ego < zone.ego.to);
+        ahead.map(|zone| zone.ego.from).reduce(f32::min)
+    };
+    match way.conflict(path) {
+        Some(conflict) => first(conflict),
+        None => way
+            .conflicts()
+            .filter_map(|(_, conflict)| first(conflict))
+            .reduce(f32::min),
+    }
+}
+
+impl Other {
+    fn new(
+        contract: &Contract,
+        number: u16,
+        path: PathId,
+        vehicle: &Vehicle,
+        now: Instant,
+    ) -> Self {
+        let (s, speed) = (vehicle.s, vehicle.speed);
+        Self {
+            number,
+            path,
+            s,
+            speed,
+            at: now,
+            bounds: Bounds::after(contract, s, speed, 0.0),
+            seen: true,
+            news: News::Appeared,
+            counted: 0,
+            settled: 0,
+            pair: PairMemory::default(),
+            claims: 0,
+        }
+    }
+
+    fn see(&mut self, contract: &Contract, vehicle: &Vehicle, now: Instant) {
+        (self.s, self.speed, self.at) = (vehicle.s, vehicle.speed, now);
+        self.seen = true;
+        self.bounds = Bounds::after(contract, vehicle.s, vehicle.speed, 0.0);
+    }
+
+    fn coasting<R: Rules>(&self, contract: &Contract, now: Instant) -> Bounds {
+        R::coast(contract, self.s, self.speed, now.seconds_since(self.at))
+    }
+
+    /// What a shield's memory of precedence notes of it.
+    pub(crate) fn sighting(&self, contract: &Contract) -> Sighting {
+        Sighting {
+            s: Some(self.bounds.s),
+            rest: if self.seen {
+                RestState::of(contract, self.speed)
+            } else {
+                RestState::Perhaps
+            },
+        }
+    }
+
+    /// Whether there is a zone that neither it has left nor the ego has `passed`.
+    fn matters<R: Rules>(&self, conflict: &RouteConflict, passed: impl Fn(&Zone) -> bool) -> bool {
+        self.ahead::<R>(conflict, passed).next().is_some()
+    }
+
+    /// Where the ego enters the first zone that neither it has left nor the ego has `passed` (m).
+    fn entry<R: Rules>(
+        &self,
+        conflict: &RouteConflict,
+        passed: impl Fn(&Zone) -> bool,
+    ) -> Option<f32> {
+        let entries = self.ahead::<R>(conflict, passed).map(|zone| zone.ego.from);
+        entries.reduce(f32::min)
+    }
+
+    fn ahead<'c, R: Rules>(
+        &self,
+        conflict: &'c RouteConflict,
+        passed: impl Fn(&Zone) -> bool + 'c,
+    ) -> impl Iterator<Item = &'c Zone> + 'c {
+        let least = self.bounds.s.from;
+        conflict
+            .zones()
+            .filter(move |zone| !passed(zone) && !R::left(zone, least))
+    }
+
+    /// Whether the ego is ahead of it in lane number `index`, and it keeps its distance.
+    pub(crate) fn is_settled(&self, index: u8) -> bool {
+        has(self.settled, index)
+    }
+}
