@@ -21,7 +21,7 @@ pub struct Seen<'s> {
     pub before: f64,
 }
 
-impl Seen<'_> {
+impl<'s> Seen<'s> {
     /// Where it is; through gentle bends it turns steadily.
     #[must_use]
     pub fn place(&self) -> Place {
@@ -30,10 +30,10 @@ impl Seen<'_> {
     }
 
     /// Where it was in between if it turned on the spot in this tick.
-    fn turns(&self) -> impl Iterator<Item = Place> {
-        let passed = |s: f64| self.before < s && s <= self.state.s;
+    fn turns(self) -> impl Iterator<Item = Place> + use<'s> {
+        let passed = move |s: f64| self.before < s && s <= self.state.s;
         let kinks = self.lane.kinks.iter().filter(move |kink| passed(kink.s));
-        kinks.flat_map(|kink| {
+        kinks.flat_map(move |kink| {
             let at = self.lane.line.place(kink.s).at;
             (0..=6).map(move |i| {
                 let to = kink.between(f64::from(i) / 6.0);

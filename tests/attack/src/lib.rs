@@ -1,9 +1,26 @@
-//! x
+//! An attacker of the safety shield that shares nothing with the simulator.
 pub mod actuator;
+pub mod campaign;
+pub mod body;
 pub mod error;
+pub mod hidden;
+pub mod human;
+pub mod judge;
+pub mod look;
 pub mod motion;
+pub mod numbers;
+pub mod outcome;
+pub mod pilot;
+pub mod plain;
 pub mod plane;
 pub mod polyline;
+pub mod proposer;
 pub mod rng;
+pub mod scenario;
+pub mod search;
+pub mod setup;
+pub mod sight;
+pub mod site;
 pub mod sketch;
 pub mod sway;
+pub mod world;

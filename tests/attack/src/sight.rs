@@ -121,7 +121,8 @@ impl Sight {
 pub fn numbers(count: usize, rng: &mut Rng) -> Vec<u16> {
     let mut numbers: Vec<u16> = Vec::new();
     while numbers.len() < count {
-        let number = rng.pick(&[0, u16::MAX, rng.clone().bits() as u16, (rng.bits() >> 20) as u16]);
+        let any = rng.bits() as u16;
+        let number = rng.pick(&[0, u16::MAX, any, any, any]);
         if !numbers.contains(&number) {
             numbers.push(number);
         }

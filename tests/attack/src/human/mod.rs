@@ -3,7 +3,7 @@
 mod aim;
 mod courtesy;
 
-pub use courtesy::Duty;
+pub use courtesy::{Duty, Meeting};
 
 use crate::motion::State;
 use crate::numbers::{Means, Numbers};

@@ -1,0 +1,138 @@
+//! One observation, as a vehicle's sensors make it of the world.
+
+use crate::body::Body;
+use crate::plane::{Place, dot, minus, norm};
+use crate::rng::Rng;
+use crate::setup::Setup;
+use crate::sight::{Shown, Sight};
+use crate::site::{Leg, Site};
+use cede_controller::geometry::unit;
+use cede_controller::{MAX_CANDIDATES, PathId, Point, Pose, Track, Vehicle};
+
+/// Two places that are so near (m) to each other are one, as a tracker sees it.
+const SAME: f64 = 0.03;
+
+/// What is handed to the shield.
+#[derive(Clone, Debug)]
+pub struct Look {
+    /// The ego.
+    pub ego: Vehicle,
+    /// The others.
+    pub tracks: Vec<Track>,
+    /// Something in it is not a number.
+    pub faulty: bool,
+}
+
+/// Bounds of the errors of place and speed.
+#[derive(Clone, Copy, Debug)]
+pub struct Bounds(pub [f64; 2]);
+
+impl Look {
+    /// What vehicle `me` sees in `junction` with its `sights`; those that are hidden are not seen.
+    pub fn new(
+        setup: &Setup<'_>,
+        bodies: &[Body],
+        (me, junction): (usize, usize),
+        sights: &mut [Sight],
+        rng: &mut Rng,
+    ) -> Option<Self> {
+        let contract = &setup.contract;
+        let bounds = Bounds([contract.position_error(), contract.speed_error()].map(f64::from));
+        let site = setup.site;
+        let leg = bodies[me].leg(site, junction)?;
+        let mut faulty = false;
+        let mut state = |j: usize, leg: Leg, sights: &mut [Sight], rng: &mut Rng| {
+            let shown = sights[j].shown(&setup.sensing, rng);
+            let mut vehicle = vehicle(setup, &bodies[j], leg, &mut sights[j], bounds);
+            if shown == Shown::Broken {
+                vehicle.s = f32::NAN;
+                faulty = true;
+            }
+            (shown, vehicle)
+        };
+        // The ego's own state may be broken, but it is there.
+        let (_, ego) = state(me, leg, sights, rng);
+        let mut tracks = Vec::with_capacity(bodies.len());
+        for (j, body) in bodies.iter().enumerate() {
+            let Some(leg) = body.leg(site, junction).filter(|_| j != me) else {
+                continue;
+            };
+            if sights[j].hidden {
+                continue;
+            }
+            let (shown, vehicle) = state(j, leg, sights, rng);
+            let blinks = setup.sensing.blinking
+                && site.areas(bodies[me].lane, body.lane).is_empty()
+                && rng.chance(0.5);
+            if shown == Shown::Missing || blinks {
+                continue;
+            }
+            let mut paths = vec![leg.path];
+            if setup.sensing.undecided {
+                paths.extend(alternatives(site, body, leg, vehicle.s));
+                rng.shuffle(&mut paths);
+                keep(&mut paths, leg.path);
+            }
+            tracks.push(track(sights[j].number, body, site, &paths, vehicle));
+        }
+        rng.shuffle(&mut tracks);
+        Some(Self {
+            ego,
+            tracks,
+            faulty,
+        })
+    }
+}
+
+fn vehicle(setup: &Setup<'_>, body: &Body, leg: Leg, sight: &mut Sight, bounds: Bounds) -> Vehicle {
+    let [place, speed] = sight.errors();
+    let scale = setup.sensing.scale;
+    let Place { at, to } = body.place(setup.site);
+    Vehicle {
+        s: (body.state.s - leg.offset + scale * place * bounds.0[0]) as f32,
+        speed: (body.state.v + scale * speed * bounds.0[1]) as f32,
+        pose: Pose {
+            position: Point::new(at[0] as f32, at[1] as f32),
+            direction: unit(to[0] as f32, to[1] as f32),
+        },
+    }
+}
+
+/// Other paths on which the vehicle may be as well, as far as its place tells; `s` is its arc length as it is sensed.
+fn alternatives<'a>(
+    site: &'a Site,
+    body: &Body,
+    leg: Leg,
+    s: f32,
+) -> impl Iterator<Item = PathId> + use<'a> {
+    let mine = &site.lanes[body.lane];
+    let (entry, class, own) = (mine.entry, mine.class, leg.path);
+    let places = [body.state.s, f64::from(s) + leg.offset];
+    site.lanes.iter().filter_map(move |lane| {
+        let there = lane.legs.iter().find(|there| there.junction == leg.junction)?;
+        let alike = |s: f64| {
+            let (a, b) = (mine.line.place(s), lane.line.place(s));
+            norm(minus(a.at, b.at)) < SAME && dot(a.to, b.to) > 0.99
+        };
+        let same = lane.entry == entry && lane.class == class && there.path != own;
+        (same && places.into_iter().all(alike)).then_some(there.path)
+    })
+}
+
+/// No more paths than a track has room for, the true one among them.
+fn keep(paths: &mut Vec<PathId>, own: PathId) {
+    let at = paths.iter().position(|&path| path == own).unwrap_or(0);
+    let last = MAX_CANDIDATES - 1;
+    if at > last {
+        paths.swap(at, last);
+    }
+    paths.truncate(MAX_CANDIDATES);
+}
+
+fn track(number: u16, body: &Body, site: &Site, paths: &[PathId], vehicle: Vehicle) -> Track {
+    let mut track = Track::on(number, paths[0], vehicle).class(site.lanes[body.lane].class);
+    for &path in &paths[1..] {
+        track = track.or(path, vehicle.s).unwrap_or(track);
+    }
+    track
+}
