@@ -10,7 +10,7 @@ use cede_controller::geometry::unit;
 use cede_controller::{MAX_CANDIDATES, PathId, Point, Pose, Track, Vehicle};
 
 /// Two places that are so near (m) to each other are one, as a tracker sees it.
-const SAME: f64 = 0.03;
+const SAME: f64 = 0.015;
 
 /// What is handed to the shield.
 #[derive(Clone, Debug)]
@@ -28,11 +28,12 @@ pub struct Look {
 pub struct Bounds(pub [f64; 2]);
 
 impl Look {
-    /// What vehicle `me` sees in `junction` with its `sights`; those that are hidden are not seen.
+    /// What vehicle `me` sees in `junction` with its `sights`, for the `first` time or not; those that are hidden are not
+    /// seen.
     pub fn new(
         setup: &Setup<'_>,
         bodies: &[Body],
-        (me, junction): (usize, usize),
+        (me, junction, first): (usize, usize, bool),
         sights: &mut [Sight],
         rng: &mut Rng,
     ) -> Option<Self> {
@@ -42,7 +43,7 @@ impl Look {
         let leg = bodies[me].leg(site, junction)?;
         let mut faulty = false;
         let mut state = |j: usize, leg: Leg, sights: &mut [Sight], rng: &mut Rng| {
-            let shown = sights[j].shown(&setup.sensing, rng);
+            let shown = sights[j].shown(&setup.sensing, first, rng);
             let mut vehicle = vehicle(setup, &bodies[j], leg, &mut sights[j], bounds);
             if shown == Shown::Broken {
                 vehicle.s = f32::NAN;

@@ -4,6 +4,7 @@ use cede_controller::dangerous::Sound;
 fn main() {
     let count: u64 = std::env::args().nth(1).map_or(64, |a| a.parse().unwrap());
     let only = std::env::args().nth(2);
+    if let Some(name) = std::env::args().nth(3) { let f = cede_attack::scenario::Family::named(&name).unwrap(); let o = f.run::<Sound>(count, true); println!("{o:?}"); let site = f.site(count).unwrap(); let s = f.setup(&site, count).unwrap(); println!("{:?} {:?} tol {} order {:?}", s.contract, s.sensing, site.tolerance, site.order); for c in &s.cars { println!("{c:?}"); } for a in &s.cars { println!("line {} len {} {:?}", site.line(a.lane), site.lanes[a.lane].line.length(), site.lanes[a.lane].size); for b in &s.cars { println!("   lanes {} {}: {:?}", a.lane, b.lane, site.areas(a.lane, b.lane)); } } return; }
     for family in FAMILIES {
         if only.as_ref().is_some_and(|only| only != family.name) { continue; }
         let count = if family.name == "search" { count.div_ceil(64) } else { count };

@@ -86,7 +86,7 @@ impl<'s, R: Rules + Clone> Pilot<'s, R> {
     }
 
     fn look(&mut self, setup: &Setup<'s>, bodies: &[Body]) -> Option<Look> {
-        let me = (self.me, self.junction);
+        let me = (self.me, self.junction, !self.verified);
         let look = Look::new(setup, bodies, me, &mut self.sights, &mut self.rng)?;
         if setup.sensing.frozen == 0 {
             return Some(look);
@@ -141,7 +141,12 @@ impl<'s, R: Rules + Clone> Pilot<'s, R> {
         let decision = self.shield.filter(now, &look.observation(), proposal);
         if self.rng.chance(REPEATED) {
             let again = self.shield.filter(now, &look.observation(), -proposal);
-            outcome.different += u64::from(again != decision);
+            // Not by value: a fault may hold what is not a number.
+            let differs = again != decision && format!("{again:?}") != format!("{decision:?}");
+            if differs {
+                outcome.different += 1;
+                outcome.complain(tick, || format!("vehicle {}: once more: {again}", self.me));
+            }
         }
         self.note(tick, &decision, &look, outcome);
         Some(decision.acceleration.into())
@@ -208,6 +213,7 @@ impl<'s, R: Rules + Clone> Pilot<'s, R> {
             let mut ahead = self.clone();
             ahead.shield = shield;
             ahead.junction += 1;
+            ahead.verified = false;
             if ahead.ready(setup, bodies, tick) {
                 *self = ahead;
             }

@@ -51,7 +51,7 @@ impl Plain {
         let wanted = f64::from(self.driver.propose(numbers, bodies[self.me].state.v));
         let wanted = if wanted.is_finite() { wanted } else { 0.0 };
         let mut sense = |j: usize| {
-            let shown = self.sights[j].shown(&setup.sensing, &mut self.rng);
+            let shown = self.sights[j].shown(&setup.sensing, false, &mut self.rng);
             let [place, speed] = self.sights[j].errors();
             let State { s, v } = bodies[j].state;
             let scale = setup.sensing.scale;

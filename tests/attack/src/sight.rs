@@ -86,8 +86,12 @@ impl Sight {
         }
     }
 
-    /// Whether it is in the next observation.
-    pub fn shown(&mut self, sensing: &Sensing, rng: &mut Rng) -> Shown {
+    /// Whether it is in the next observation; it certainly is if it is the `first` one.
+    pub fn shown(&mut self, sensing: &Sensing, first: bool, rng: &mut Rng) -> Shown {
+        // One that appears later than that is a newcomer.
+        if first {
+            return Shown::Seen;
+        }
         if self.broken > 0 {
             self.broken -= 1;
             return Shown::Broken;

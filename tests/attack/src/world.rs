@@ -203,6 +203,8 @@ impl<'s, R: Rules + Clone> World<'s, R> {
         };
         if let Mind::Waiting(pilot, _) = &mut self.minds[i]
             && tick >= from
+            && self.bodies[i].felt >= -self.numbers.ego.braking
+            && self.bodies[i].felt <= self.numbers.ego.acceleration
             && pilot.ready(self.setup, &self.bodies, tick)
         {
             // What its human did is in effect until the first command is.

@@ -22,7 +22,8 @@ pub fn row(across: usize, users: Users, rng: &mut Rng) -> Vec<Way> {
 fn road(rng: &mut Rng) -> Way {
     let kind = Kind::Car;
     let size = kind.size(rng);
-    let stations = [-APPROACH, 30.0, 60.0, APART + LEAVING];
+    // Seen from the second junction well before it comes there.
+    let stations = [-APPROACH, -60.0, 60.0, APART + LEAVING];
     let points = stations.map(|x| [x as f32, 0.0]).to_vec();
     let cut = |junction, from, to| Cut { junction, from, to };
     Way {
