@@ -70,9 +70,8 @@ impl Look {
             }
             let mut paths = vec![leg.path];
             if setup.sensing.undecided {
-                paths.extend(alternatives(site, body, leg, vehicle.s));
+                paths.extend(alternatives(site, body, leg, vehicle.s, &mut sights[j]));
                 rng.shuffle(&mut paths);
-                keep(&mut paths, leg.path);
             }
             tracks.push(track(sights[j].number, body, site, &paths, vehicle));
         }
@@ -99,35 +98,30 @@ fn vehicle(setup: &Setup<'_>, body: &Body, leg: Leg, sight: &mut Sight, bounds: 
     }
 }
 
-/// Other paths on which the vehicle may be as well, as far as its place tells; `s` is its arc length as it is sensed.
-fn alternatives<'a>(
-    site: &'a Site,
-    body: &Body,
-    leg: Leg,
-    s: f32,
-) -> impl Iterator<Item = PathId> + use<'a> {
+/// Other paths on which the vehicle may be as well, as far as its place has ever told; `s` is its arc length as it is
+/// sensed.
+fn alternatives(site: &Site, body: &Body, leg: Leg, s: f32, sight: &mut Sight) -> Vec<PathId> {
     let mine = &site.lanes[body.lane];
-    let (entry, class, own) = (mine.entry, mine.class, leg.path);
     let places = [body.state.s, f64::from(s) + leg.offset];
-    site.lanes.iter().filter_map(move |lane| {
-        let there = lane.legs.iter().find(|there| there.junction == leg.junction)?;
+    let mut found = Vec::new();
+    for lane in site.lanes.iter().filter(|lane| lane.entry == mine.entry && lane.class == mine.class) {
+        let there = lane.legs.iter().find(|there| there.junction == leg.junction);
+        let Some(there) = there.filter(|there| there.path != leg.path) else {
+            continue;
+        };
         let alike = |s: f64| {
             let (a, b) = (mine.line.place(s), lane.line.place(s));
             norm(minus(a.at, b.at)) < SAME && dot(a.to, b.to) > 0.99
         };
-        let same = lane.entry == entry && lane.class == class && there.path != own;
-        (same && places.into_iter().all(alike)).then_some(there.path)
-    })
-}
-
-/// No more paths than a track has room for, the true one among them.
-fn keep(paths: &mut Vec<PathId>, own: PathId) {
-    let at = paths.iter().position(|&path| path == own).unwrap_or(0);
-    let last = MAX_CANDIDATES - 1;
-    if at > last {
-        paths.swap(at, last);
+        let known = sight.excluded.contains(&there.path);
+        // A track has room for so many, its own among them; whoever is left out once stays out.
+        if !known && found.len() + 1 < MAX_CANDIDATES && places.into_iter().all(alike) {
+            found.push(there.path);
+        } else if !known {
+            sight.excluded.push(there.path);
+        }
     }
-    paths.truncate(MAX_CANDIDATES);
+    found
 }
 
 fn track(number: u16, body: &Body, site: &Site, paths: &[PathId], vehicle: Vehicle) -> Track {

@@ -131,12 +131,14 @@ impl<'s, R: Rules + Clone> Pilot<'s, R> {
         let proposal = self.driver.propose(numbers, bodies[self.me].state.v);
         let mut look = self.look(setup, bodies)?;
         let now = self.now(tick);
-        if self.sights.iter().any(|sight| sight.hidden) {
+        // Those for whom a plan without them leaves no room have been seen before it was made.
+        while self.sights.iter().any(|sight| sight.hidden) {
             let mut unawares = self.shield.clone();
             let decision = unawares.filter(now, &look.observation(), proposal);
-            if self.reveals(setup, numbers, bodies, &decision) {
-                look = self.look(setup, bodies)?;
+            if !self.reveals(setup, numbers, bodies, &decision) {
+                break;
             }
+            look = self.look(setup, bodies)?;
         }
         let decision = self.shield.filter(now, &look.observation(), proposal);
         if self.rng.chance(REPEATED) {

@@ -2,6 +2,7 @@
 
 use crate::error::{ErrorSource, Shape};
 use crate::rng::Rng;
+use cede_controller::PathId;
 
 /// How well vehicles see, within the contract.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,6 +55,8 @@ pub struct Sight {
     broken: u32,
     /// It has not been seen yet.
     pub hidden: bool,
+    /// Paths on which it certainly is not.
+    pub excluded: Vec<PathId>,
 }
 
 /// Whether and how a vehicle is in an observation.
@@ -83,6 +86,7 @@ impl Sight {
             missing: 0,
             broken: 0,
             hidden: sensing.newcomers,
+            excluded: Vec::new(),
         }
     }
 

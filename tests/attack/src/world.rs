@@ -11,6 +11,7 @@ use crate::pilot::Pilot;
 use crate::plain::Plain;
 use crate::proposer;
 use crate::rng::Rng;
+use crate::scenario::can_begin;
 use crate::setup::{Car, Driver, Setup};
 use cede_controller::dangerous::Rules;
 
@@ -201,10 +202,9 @@ impl<'s, R: Rules + Clone> World<'s, R> {
         let Driver::Shielded { from, .. } = self.setup.cars[i].driver else {
             return true;
         };
+        let may = tick >= from && self.may_begin(i);
         if let Mind::Waiting(pilot, _) = &mut self.minds[i]
-            && tick >= from
-            && self.bodies[i].felt >= -self.numbers.ego.braking
-            && self.bodies[i].felt <= self.numbers.ego.acceleration
+            && may
             && pilot.ready(self.setup, &self.bodies, tick)
         {
             // What its human did is in effect until the first command is.
@@ -221,6 +221,18 @@ impl<'s, R: Rules + Clone> World<'s, R> {
         }
         self.choose(i);
         true
+    }
+
+    /// Whether the contract lets control of vehicle `i` be handed over now.
+    fn may_begin(&self, i: usize) -> bool {
+        let ego = self.numbers.ego;
+        let me = &self.bodies[i];
+        let mut others = self.bodies.iter().enumerate().filter(|&(j, body)| j != i && !body.gone);
+        (-ego.braking..=ego.acceleration).contains(&me.felt)
+            && others.all(|(_, other)| {
+                let [me, other] = [me, other].map(|body| (body.lane, body.state));
+                can_begin(self.setup.site, &self.numbers, me, other)
+            })
     }
 
     /// The human of vehicle `i` chooses.

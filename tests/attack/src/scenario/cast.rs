@@ -174,20 +174,23 @@ impl Cast {
     }
 }
 
-/// Whether two vehicles can begin like this: apart, and whoever is behind a shielded one in its lane can stop.
+/// Whether two vehicles can begin like this, if they matter to each other.
 fn fit(site: &Site, numbers: &Numbers, a: &Car, b: &Car) -> bool {
     let shielded = |car: &Car| matches!(car.driver, Driver::Shielded { .. });
-    if !shielded(a) && !shielded(b) {
-        return true;
-    }
-    let place = |car: &Car| site.lanes[car.lane].line.place(car.start.s);
-    let size = |car: &Car| site.lanes[car.lane].size;
-    let gap = separation(place(a), size(a), place(b), size(b));
-    let keeps = |ego: &Car, other: &Car| {
-        let areas = site.areas(ego.lane, other.lane);
-        areas.iter().all(|area| has_gap(numbers, area, ego.start, other.start))
-    };
-    gap > 0.5 + 2.0 * site.tolerance && keeps(a, b) && keeps(b, a)
+    let [one, two] = [a, b].map(|car| (car.lane, car.start));
+    !(shielded(a) || shielded(b)) || can_begin(site, numbers, one, two) && can_begin(site, numbers, two, one)
+}
+
+/// Whether control of a vehicle can be handed over while there is another: they are apart, and that one is not behind
+/// it in its lane, or has the safe gap. Each is a lane and a motion.
+#[must_use]
+pub fn can_begin(site: &Site, numbers: &Numbers, ego: (usize, State), other: (usize, State)) -> bool {
+    let place = |(lane, state): (usize, State)| site.lanes[lane].line.place(state.s);
+    let size = |(lane, _): (usize, State)| site.lanes[lane].size;
+    let gap = separation(place(ego), size(ego), place(other), size(other));
+    let areas = site.areas(ego.0, other.0);
+    let keeps = areas.iter().all(|area| has_gap(numbers, area, ego.1, other.1));
+    gap > 0.5 + 2.0 * site.tolerance && keeps
 }
 
 /// Whether `other` is not behind `ego` in a lane, as far as sensors tell, or can stop there.

@@ -4,7 +4,7 @@ mod cast;
 mod family;
 mod terms;
 
-pub use cast::{Cast, Manners, Start};
+pub use cast::{Cast, Manners, Start, can_begin};
 pub use family::{FAMILIES, Family};
 pub use terms::Terms;
 

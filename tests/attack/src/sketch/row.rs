@@ -22,8 +22,7 @@ pub fn row(across: usize, users: Users, rng: &mut Rng) -> Vec<Way> {
 fn road(rng: &mut Rng) -> Way {
     let kind = Kind::Car;
     let size = kind.size(rng);
-    // Seen from the second junction well before it comes there.
-    let stations = [-APPROACH, -60.0, 60.0, APART + LEAVING];
+    let stations = [-APPROACH, 60.0, APART + LEAVING];
     let points = stations.map(|x| [x as f32, 0.0]).to_vec();
     let cut = |junction, from, to| Cut { junction, from, to };
     Way {
@@ -31,7 +30,8 @@ fn road(rng: &mut Rng) -> Way {
         kind,
         size,
         entry: 0,
-        cuts: vec![cut(0, 0, 3), cut(1, 1, 4)],
+        // Those at the second junction see it from the beginning: nobody appears there.
+        cuts: vec![cut(0, 0, 2), cut(1, 0, 3)],
     }
 }
 
