@@ -113,12 +113,15 @@ impl Cast {
         };
         let ego = numbers.ego;
         let limiter = numbers.ego.speed + numbers.speed_error * rng.within(-1.0, 1.0);
-        // One that others fear has to keep their bound on speed.
         let limited = rng.chance(0.5);
+        let any = rng.within(-ego.braking, ego.acceleration);
+        let acceleration = rng.pick(&[0.0, -ego.braking, ego.acceleration, any]);
+        // One that others fear keeps their bound on speed, before its shield does, too.
+        let fast = start.v + 0.5 * acceleration.max(0.0) > numbers.ego.speed;
         Car {
             lane,
             start,
-            acceleration: rng.pick(&[0.0, -ego.braking, ego.acceleration, rng.clone().within(-ego.braking, ego.acceleration)]),
+            acceleration: if fast { 0.0 } else { acceleration },
             driver,
             cap: match (shielded, limited) {
                 (true, true) => limiter.min(numbers.other.speed),
