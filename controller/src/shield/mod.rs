@@ -39,6 +39,7 @@ use clock::{Clock, Tick};
 use core::marker::PhantomData;
 use hazard::{Hazards, Passage};
 use memory::Memory;
+use precedence::PairMemory;
 use tracks::{Findings, Tracks};
 use verified::{Verified, best, passage_margin, spare};
 use waiting::{Presence, RestState, Sighting};
@@ -228,6 +229,14 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
     /// [`EnterError::PositionError`]; nothing is changed then.
     pub fn set_contract(&mut self, contract: Contract) -> Result<(), EnterError> {
         tells_apart(&contract, self.way)?;
+        if contract.precedence != self.contract.precedence {
+            // What was counted by the former rule says nothing about this one.
+            self.presence = Presence::default();
+            for other in self.tracks.iter_mut() {
+                other.pair = PairMemory::default();
+                other.pair.forget();
+            }
+        }
         self.contract = contract;
         self.replaced = true;
         Ok(())
@@ -379,11 +388,12 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         }
     }
 
-    /// The ego's own state cannot be trusted: it carries on with the plan, if its commands were given in time.
+    /// The ego's own state cannot be trusted: it carries on with the plan, if its commands were given in time and the
+    /// contract is the one for which it was verified.
     fn blind(&mut self, (now, tick): (Instant, Tick), fault: Fault, on_time: bool) -> Decision {
         self.tracks.coast::<R>(&self.contract, now);
         self.wait((now, tick), None);
-        if !on_time {
+        if !on_time || self.replaced {
             self.void();
         }
         let in_effect = self.memory.in_effect(&self.contract, now);

@@ -20,18 +20,32 @@ impl RestState {
     /// What a vehicle does that is sensed at `speed` (m/s); to be at rest is to have [`Contract::rest_speed`] or less.
     ///
     /// One surely at rest here is faster than that by twice the error at most, and any other
-    /// sensor shows one error more: for that one it is perhaps at rest.
+    /// sensor shows one error more: for that one it is perhaps at rest. One that is certainly not at rest was not
+    /// so slow either at any moment between two such observations: [`dip`].
     #[must_use]
     pub fn of(contract: &Contract, speed: f32) -> Self {
         let (slow, error) = (contract.rest_speed(), contract.speed_error);
         if speed <= slow + error {
             Self::Surely
-        } else if speed <= slow + 3.0 * error {
+        } else if speed <= slow + 3.0 * error + dip(contract) {
             Self::Perhaps
         } else {
             Self::No
         }
     }
+}
+
+/// How much slower (m/s) a vehicle can have been between two calls than at both of them: braking as hard as it can,
+/// and then accelerating as hard.
+fn dip(contract: &Contract) -> f32 {
+    let (a, b) = (contract.other.acceleration, contract.other.braking);
+    (contract.period + 2.0 * contract.jitter) * (a * b / (a + b))
+}
+
+/// How many calls in a row have to see a vehicle move, so that everybody has seen it at least once.
+fn witnesses(contract: &Contract) -> u8 {
+    // Two calls are a period apart, or less with jitter; three are a longest period apart.
+    if contract.jitter > 0.0 { 3 } else { 2 }
 }
 
 /// Periods from the end of one vehicle's turn to the beginning of the other's. One seen at rest until then
@@ -127,8 +141,8 @@ impl Arrival {
 pub(super) struct Standstill {
     pub(super) perhaps: u16,
     pub(super) surely: u16,
-    /// It moved when it was last seen: perhaps for that one moment only, which somebody else may have missed.
-    moved: bool,
+    /// Calls in a row that saw it move: perhaps for these moments only, which somebody else may have missed.
+    moved: u8,
 }
 
 impl Default for Standstill {
@@ -137,23 +151,25 @@ impl Default for Standstill {
         Self {
             perhaps: u16::MAX,
             surely: 0,
-            moved: false,
+            moved: 0,
         }
     }
 }
 
 impl Standstill {
-    /// One more period.
-    fn note(&mut self, rest: RestState, arrived: Arrived) {
-        let moves = rest == RestState::No;
+    /// One more period; so many `witnesses` of its motion leave no doubt.
+    fn note(&mut self, rest: RestState, arrived: Arrived, witnesses: u8) {
+        self.moved = match rest {
+            RestState::No => self.moved.saturating_add(1),
+            _ => 0,
+        };
         let count = |keeps: bool, periods: u16| {
             if keeps { periods.saturating_add(1) } else { 0 }
         };
-        let keeps = arrived != Arrived::Not && !(moves && self.moved);
+        let keeps = arrived != Arrived::Not && self.moved < witnesses;
         self.perhaps = count(keeps, self.perhaps);
         let sure = rest == RestState::Surely && arrived == Arrived::Surely;
         self.surely = count(sure, self.surely);
-        self.moved = moves;
     }
 }
 
@@ -202,7 +218,8 @@ impl Presence {
             None if self.arrival.by.is_some() => Arrived::Surely,
             None => Arrived::Perhaps,
         };
-        self.standstill.note(sighting.rest, arrived);
+        self.standstill
+            .note(sighting.rest, arrived, witnesses(contract));
     }
 
     /// Notes what is sensed within a period that has been noted already.

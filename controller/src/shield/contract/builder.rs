@@ -42,7 +42,7 @@ impl ContractBuilder {
         self
     }
 
-    /// How far (s) a call may be from the grid of periods, either way, in [0, `period`/3].
+    /// How far (s) a call may be from the grid of periods, either way, in [0, `period`/4].
     pub const fn jitter(mut self, jitter: f32) -> Self {
         self.numbers.jitter = jitter;
         self

@@ -120,7 +120,7 @@ const fn everywhere(contract: &Contract) -> [Demand; 15] {
         (
             "jitter",
             contract.jitter,
-            from(0.0, contract.period / 3.0),
+            from(0.0, contract.period / 4.0),
             "",
         ),
         (

@@ -191,7 +191,7 @@ impl Contract {
         self.latency
     }
 
-    /// How far (s) a call may be from the grid of periods, either way, in [0, `period`/3].
+    /// How far (s) a call may be from the grid of periods, either way, in [0, `period`/4].
     #[must_use]
     pub const fn jitter(&self) -> f32 {
         self.jitter
