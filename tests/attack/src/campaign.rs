@@ -35,13 +35,15 @@ pub struct Tally {
     pub shielded: u64,
     /// Shielded vehicles that got through.
     pub through: u64,
-    /// The first scenario in which something was wrong.
+    /// The first scenario with an overlap, or else the first in which something was wrong.
     pub case: Option<Case>,
 }
 
 /// A scenario in which something was wrong.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Case {
+    /// It has no overlap.
+    pub apart: bool,
     /// Its seed.
     pub seed: u64,
     /// What was wrong.
@@ -70,7 +72,11 @@ impl Tally {
             unwatched: outcome.unwatched,
             shielded: outcome.shielded,
             through: outcome.through,
-            case: outcome.is_bad().then(|| Case { seed, what: what() }),
+            case: outcome.is_bad().then(|| Case {
+                apart: outcome.overlap.is_none(),
+                seed,
+                what: what(),
+            }),
         }
     }
 
@@ -78,7 +84,7 @@ impl Tally {
     #[must_use]
     pub fn plus(self, other: Self) -> Self {
         let case = match (self.case, other.case) {
-            (Some(a), Some(b)) => Some(if a.seed <= b.seed { a } else { b }),
+            (Some(a), Some(b)) => Some(a.min(b)),
             (a, b) => a.or(b),
         };
         Self {

@@ -5,7 +5,7 @@ use crate::plane::{Place, dot, minus, norm};
 use crate::rng::Rng;
 use crate::setup::Setup;
 use crate::sight::{Shown, Sight};
-use crate::site::{Leg, Site};
+use crate::site::{Area, Leg, Site};
 use cede_controller::geometry::unit;
 use cede_controller::{MAX_CANDIDATES, PathId, Point, Pose, Track, Vehicle};
 
@@ -61,11 +61,12 @@ impl Look {
             if sights[j].hidden {
                 continue;
             }
+            let areas = site.areas(bodies[me].lane, body.lane);
             let (shown, vehicle) = state(j, leg, sights, rng);
-            let blinks = setup.sensing.blinking
-                && site.areas(bodies[me].lane, body.lane).is_empty()
-                && rng.chance(0.5);
-            if shown == Shown::Missing || blinks {
+            let blinks = setup.sensing.blinking && areas.is_empty() && rng.chance(0.5);
+            // Who may have left is as good as new: of one whose state is not a number, nothing is known then.
+            let lost = shown == Shown::Broken && !matters(areas, [&bodies[me], body], bounds.0[0]);
+            if shown == Shown::Missing || blinks || lost {
                 continue;
             }
             let mut paths = vec![leg.path];
@@ -82,6 +83,13 @@ impl Look {
             faulty,
         })
     }
+}
+
+/// Whether an ego and another surely have a zone ahead, whatever the `error` (m) of their places.
+fn matters(areas: &[Area], [ego, other]: [&Body; 2], error: f64) -> bool {
+    areas.iter().any(|area| {
+        ego.state.s + 4.0 * error < area.ego[1] && other.state.s + 4.0 * error < area.other[1]
+    })
 }
 
 fn vehicle(setup: &Setup<'_>, body: &Body, leg: Leg, sight: &mut Sight, bounds: Bounds) -> Vehicle {
