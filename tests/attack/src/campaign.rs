@@ -1,122 +1,16 @@
 //! Scenarios by the million.
 
 use crate::outcome::Outcome;
-use crate::scenario::{Family, Manners, SHARE};
+use crate::scenario::{Family, SHARE};
 use crate::search::search;
+use crate::site::Site;
+use crate::tally::Tally;
 use crate::world::play;
 use cede_controller::dangerous::Rules;
 use rayon::prelude::*;
-use serde::Serialize;
-
-/// What came of many scenarios of one family.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Tally {
-    /// Scenarios that began with verified plans.
-    pub scenarios: u64,
-    /// Those that did not, or for which there was no room.
-    pub skipped: u64,
-    /// Decisions of shields in the former.
-    pub steps: u64,
-    /// Scenarios in which a shielded vehicle and another were in one place.
-    pub overlaps: u64,
-    /// Breaches reported although everybody kept the contract.
-    pub false_breaches: u64,
-    /// Faults reported although there was none.
-    pub false_faults: u64,
-    /// Decisions without a plan after the first one with one.
-    pub unplanned: u64,
-    /// Repeated calls that gave another decision.
-    pub different: u64,
-    /// Decisions that did not let the proposal pass.
-    pub interventions: u64,
-    /// Decisions in which somebody was not watched.
-    pub unwatched: u64,
-    /// Shielded vehicles, and those that got through.
-    pub shielded: u64,
-    /// Shielded vehicles that got through.
-    pub through: u64,
-    /// The first scenario with an overlap, or else the first in which something was wrong.
-    pub case: Option<Case>,
-}
-
-/// A scenario in which something was wrong.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-pub struct Case {
-    /// It has no overlap.
-    pub apart: bool,
-    /// Its seed.
-    pub seed: u64,
-    /// What was wrong.
-    pub what: String,
-}
-
-impl Tally {
-    fn of(seed: u64, outcome: &Outcome) -> Self {
-        if !outcome.verified {
-            return Self {
-                skipped: 1,
-                ..Self::default()
-            };
-        }
-        let what = || outcome.first.clone().unwrap_or_default();
-        Self {
-            scenarios: 1,
-            skipped: 0,
-            steps: outcome.steps,
-            overlaps: u64::from(outcome.overlap.is_some()),
-            false_breaches: outcome.breaches,
-            false_faults: outcome.faults,
-            unplanned: outcome.unplanned,
-            different: outcome.different,
-            interventions: outcome.interventions,
-            unwatched: outcome.unwatched,
-            shielded: outcome.shielded,
-            through: outcome.through,
-            case: outcome.is_bad().then(|| Case {
-                apart: outcome.overlap.is_none(),
-                seed,
-                what: what(),
-            }),
-        }
-    }
-
-    /// Both together.
-    #[must_use]
-    pub fn plus(self, other: Self) -> Self {
-        let case = match (self.case, other.case) {
-            (Some(a), Some(b)) => Some(a.min(b)),
-            (a, b) => a.or(b),
-        };
-        Self {
-            scenarios: self.scenarios + other.scenarios,
-            skipped: self.skipped + other.skipped,
-            steps: self.steps + other.steps,
-            overlaps: self.overlaps + other.overlaps,
-            false_breaches: self.false_breaches + other.false_breaches,
-            false_faults: self.false_faults + other.false_faults,
-            unplanned: self.unplanned + other.unplanned,
-            different: self.different + other.different,
-            interventions: self.interventions + other.interventions,
-            unwatched: self.unwatched + other.unwatched,
-            shielded: self.shielded + other.shielded,
-            through: self.through + other.through,
-            case,
-        }
-    }
-
-    /// Whether the shield failed.
-    #[must_use]
-    pub fn is_bad(&self) -> bool {
-        self.case.is_some()
-    }
-}
+use std::ops::Range;
 
 impl Family {
-    fn is_search(&self) -> bool {
-        let cast = (self.cast)(&mut crate::rng::Rng::new(0));
-        cast.manners == Manners::Searched
-    }
-
     /// Scenario `seed`; with `trace` it prints every decision.
     #[must_use]
     pub fn run<R: Rules + Clone>(&self, seed: u64, trace: bool) -> Outcome {
@@ -124,11 +18,11 @@ impl Family {
         site.map_or_else(Outcome::default, |site| self.run_on::<R>(&site, seed, trace))
     }
 
-    fn run_on<R: Rules + Clone>(&self, site: &crate::site::Site, seed: u64, trace: bool) -> Outcome {
+    fn run_on<R: Rules + Clone>(&self, site: &Site, seed: u64, trace: bool) -> Outcome {
         let Some(setup) = self.setup(site, seed) else {
             return Outcome::default();
         };
-        if self.is_search() {
+        if self.searches {
             search::<R>(&setup, trace)
         } else {
             play::<R>(&setup, trace)
@@ -138,19 +32,13 @@ impl Family {
     /// Scenarios `from` to `from + count`, on as many threads as there are; the result does not depend on how many.
     #[must_use]
     pub fn campaign<R: Rules + Clone>(&self, from: u64, count: u64) -> Tally {
-        let first = from / SHARE;
-        let last = (from + count).div_ceil(SHARE);
-        (first..last)
-            .into_par_iter()
-            .map(|site| {
-                let seeds = (site * SHARE).max(from)..((site + 1) * SHARE).min(from + count);
-                self.batch::<R>(seeds)
-            })
-            .reduce(Tally::default, Tally::plus)
+        let jobs: Vec<Range<u64>> = by_site(from, count).collect();
+        let tallies = jobs.into_par_iter().map(|seeds| self.batch::<R>(seeds));
+        tallies.reduce(Tally::default, Tally::plus)
     }
 
     /// Scenarios of one site.
-    fn batch<R: Rules + Clone>(&self, seeds: std::ops::Range<u64>) -> Tally {
+    fn batch<R: Rules + Clone>(&self, seeds: Range<u64>) -> Tally {
         let Some(site) = self.site(seeds.start) else {
             return Tally {
                 skipped: seeds.end - seeds.start,
@@ -158,6 +46,51 @@ impl Family {
             };
         };
         let run = |seed| Tally::of(seed, &self.run_on::<R>(&site, seed, false));
-        seeds.map(run).fold(Tally::default(), Tally::plus)
+        // A search is a few hundred scenarios by itself.
+        let step = if self.searches { SHARE as usize } else { 1 };
+        seeds.step_by(step).map(run).fold(Tally::default(), Tally::plus)
+    }
+}
+
+/// So many scenarios from this one on, those of one site together.
+fn by_site(from: u64, count: u64) -> impl Iterator<Item = Range<u64>> {
+    let to = from + count;
+    (from / SHARE..to.div_ceil(SHARE))
+        .map(move |site| (site * SHARE).max(from)..((site + 1) * SHARE).min(to))
+}
+
+/// Scenarios of each family in a round.
+const ROUND: u64 = 4 * SHARE;
+
+/// Some scenarios of every family after the other; rounds are the same on any number of threads.
+#[derive(Clone, Copy, Debug)]
+pub struct Round {
+    next: u64,
+}
+
+impl Round {
+    /// The first round begins with this seed.
+    #[must_use]
+    pub fn from(seed: u64) -> Self {
+        Self { next: seed }
+    }
+
+    /// What came of the next round, for each of the `families`.
+    pub fn next<R: Rules + Clone>(&mut self, families: &[&Family]) -> Vec<Tally> {
+        let from = self.next;
+        self.next += ROUND;
+        let numbered = families.iter().enumerate();
+        let jobs: Vec<(usize, &Family, Range<u64>)> = numbered
+            .flat_map(|(i, &family)| by_site(from, ROUND).map(move |seeds| (i, family, seeds)))
+            .collect();
+        let done: Vec<(usize, Tally)> = jobs
+            .into_par_iter()
+            .map(|(i, family, seeds)| (i, family.batch::<R>(seeds)))
+            .collect();
+        let mut tallies = vec![Tally::default(); families.len()];
+        for (i, tally) in done {
+            tallies[i] = std::mem::take(&mut tallies[i]).plus(tally);
+        }
+        tallies
     }
 }

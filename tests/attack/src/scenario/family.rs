@@ -25,6 +25,8 @@ pub struct Family {
     pub ordered: bool,
     /// How long a scenario lasts at most, in s.
     pub seconds: f64,
+    /// The accelerations of others are searched for.
+    pub searches: bool,
 }
 
 /// One shielded vehicle among hostile others, which see well or not.
@@ -37,6 +39,7 @@ const ONE: Family = Family {
     sensing: |_| Sensing::PLAIN,
     ordered: false,
     seconds: 18.0,
+    searches: false,
 };
 
 /// Only shielded vehicles.
@@ -375,6 +378,7 @@ pub const FAMILIES: &[Family] = &[
             ..Cast::one(1 + rng.below(2))
         },
         seconds: 12.0,
+        searches: true,
         ..ONE
     },
 ];

@@ -1,6 +1,7 @@
 //! From a family and a seed to a scenario.
 
 mod cast;
+mod describe;
 mod family;
 mod terms;
 
