@@ -81,6 +81,12 @@ impl<'s, R: Rules + Clone> Pilot<'s, R> {
         self.shield.plan()
     }
 
+    /// The number of vehicle `other`'s track.
+    #[must_use]
+    pub fn number(&self, other: usize) -> u16 {
+        self.sights[other].number
+    }
+
     fn now(&self, tick: u64) -> Instant {
         Instant::from_micros(self.epoch + tick * (TICK * 1e6) as u64)
     }

@@ -386,8 +386,9 @@ impl<'s, R: Rules + Clone> World<'s, R> {
         );
         for (j, body) in self.bodies.iter().enumerate().filter(|(_, body)| !body.gone) {
             let (lane, state) = (body.lane, body.state);
+            let number = if i == j { String::new() } else { format!("track {}", pilot.number(j)) };
             println!(
-                "           {j} on lane {lane}: s {:8.3} m, v {:6.3} m/s, a {:6.2} m/s²",
+                "           {j} on lane {lane}: s {:8.3} m, v {:6.3} m/s, a {:6.2} m/s² {number}",
                 state.s, state.v, body.felt
             );
         }
