@@ -5,8 +5,23 @@ use crate::plane::{Place, separation};
 use crate::site::Lane;
 use crate::sway::Sway;
 
-/// No two vehicles come nearer to each other than at this speed (m/s).
-const CLOSING: f64 = 60.0;
+/// Corners of a vehicle that turns are faster than its centre, by this factor at most.
+const CORNERS: f64 = 1.7;
+
+/// Two vehicles together do not become faster than this (m/s) within [`LONGEST`].
+const FASTER: f64 = 2.5;
+
+/// The longest time between two looks, in ticks.
+const LONGEST: f64 = 50.0;
+
+/// Ticks in which two vehicles that are `gap` m apart cannot touch.
+fn free_ticks(gap: f64, seen: [Seen<'_>; 2]) -> u64 {
+    // A kink moves corners at once.
+    let [a, b] = seen.map(|seen| seen.lane.jump);
+    let closing = CORNERS * (seen[0].state.v + seen[1].state.v + FASTER);
+    let ticks = (gap - a - b) / (closing * TICK);
+    ticks.clamp(0.0, LONGEST) as u64
+}
 
 /// A vehicle as the judge sees it.
 #[derive(Clone, Copy, Debug)]
@@ -80,10 +95,7 @@ impl Judge {
         for place in two.turns() {
             gap = gap.min(separation(pa, sa, place, sb));
         }
-        // A turn on the spot moves corners, too: the centres tell how long that cannot matter.
-        let apart = crate::plane::norm(crate::plane::minus(pa.at, pb.at));
-        let free = (apart - sa.radius() - sb.radius() - 1.0).max(0.0);
-        *next = tick + 1 + (free / (CLOSING * TICK)) as u64;
+        *next = tick + 1 + free_ticks(gap, [one, two]);
         self.closest = self.closest.min(gap);
         gap < 0.0
     }

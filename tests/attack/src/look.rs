@@ -63,7 +63,9 @@ impl Look {
             }
             let areas = site.areas(bodies[me].lane, body.lane);
             let (shown, vehicle) = state(j, leg, sights, rng);
-            let blinks = setup.sensing.blinking && areas.is_empty() && rng.chance(0.5);
+            // One that is undecided may meet the ego on a path that is not its own.
+            let bystander = areas.is_empty() && !setup.sensing.undecided;
+            let blinks = setup.sensing.blinking && bystander && rng.chance(0.5);
             // Who may have left is as good as new: of one whose state is not a number, nothing is known then.
             let lost = shown == Shown::Broken && !matters(areas, [&bodies[me], body], bounds.0[0]);
             if shown == Shown::Missing || blinks || lost {

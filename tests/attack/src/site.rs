@@ -66,6 +66,8 @@ pub struct Lane {
     pub kinks: Vec<Kink>,
     /// Through bends with at least this cosine it turns steadily, a little before and after.
     pub gentle: f64,
+    /// No kink moves a corner by more than this, in m.
+    pub jump: f64,
 }
 
 /// A conflict zone of the controller's, in arc lengths of the lanes.
@@ -263,6 +265,7 @@ fn lane(way: &Way) -> Lane {
     Lane {
         kinks: kinks(&line, gentle),
         gentle,
+        jump: 2.0 * way.size.radius() * (0.5 * line.sharpest()).sin(),
         line,
         size: way.size,
         class: class(way.kind),

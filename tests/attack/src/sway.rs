@@ -1,6 +1,6 @@
 //! Where a vehicle is beside its route, within the junction's tolerance.
 
-use crate::plane::{Place, along, left, turned};
+use crate::plane::{Place, along, direction, left};
 use crate::rng::Rng;
 
 /// A steady offset to the side and a turn, which together move no point of the footprint farther than the
@@ -8,6 +8,7 @@ use crate::rng::Rng;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sway {
     aside: f64,
+    /// Tangent of the angle.
     turn: f64,
     /// Metres of arc length from one side to the other and back; 0: always on the same side.
     wave: f64,
@@ -21,7 +22,7 @@ impl Sway {
         let (aside, turned) = (tolerance * (1.0 - share), tolerance * share);
         Self {
             aside: 0.99 * aside * rng.sign(),
-            // A turn by x moves a corner by 2 r sin(x / 2) ≤ r x.
+            // A turn by x moves a corner by 2 r sin(x / 2) ≤ r tan x.
             turn: 0.99 * turned / radius * rng.sign(),
             wave: rng.pick(&[0.0, 0.0, 10.0, 30.0]),
         }
@@ -34,13 +35,14 @@ impl Sway {
             return nominal;
         }
         let share = if self.wave > 0.0 {
-            (s * std::f64::consts::TAU / self.wave).cos()
+            1.0 - 4.0 * ((s / self.wave).fract() - 0.5).abs()
         } else {
             1.0
         };
+        let side = left(nominal.to);
         Place {
-            at: along(nominal.at, left(nominal.to), share * self.aside),
-            to: turned(nominal.to, share * self.turn),
+            at: along(nominal.at, side, share * self.aside),
+            to: direction(along(nominal.to, side, share * self.turn)),
         }
     }
 }

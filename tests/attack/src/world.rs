@@ -47,6 +47,8 @@ pub struct World<'s, R: Rules> {
     clocks: Vec<Clock>,
     /// What vehicle i owes vehicle j, at i × count + j.
     duties: Vec<Duty>,
+    /// Vehicles that have a shield, switched on or not.
+    shielded: Vec<usize>,
     lines: Vec<f64>,
     /// Where each vehicle has passed all crossings with those that are there.
     clear: Vec<f64>,
@@ -122,6 +124,7 @@ impl<'s, R: Rules + Clone> World<'s, R> {
             setup,
             numbers,
             duties: vec![Duty::default(); cars.len() * cars.len()],
+            shielded: (0..cars.len()).filter(|&i| is_shielded(&minds[i])).collect(),
             lines: cars.iter().map(|car| setup.site.line(car.lane)).collect(),
             clear: (0..cars.len()).map(|i| clear(setup, i)).collect(),
             judge: Judge::new(cars.len()),
@@ -296,11 +299,10 @@ impl<'s, R: Rules + Clone> World<'s, R> {
     fn humanly(&mut self, i: usize, tick: u64, wanted: f64) -> f64 {
         let (site, count) = (self.setup.site, self.bodies.len());
         let mut limit = wanted;
-        for j in 0..count {
-            let driven = matches!(self.minds[j], Mind::Shielded(_) | Mind::Waiting(..));
+        for &j in &self.shielded {
             let (me, ego) = (&self.bodies[i], &self.bodies[j]);
             let areas = site.areas(ego.lane, me.lane);
-            if i == j || !driven || ego.gone || areas.is_empty() {
+            if i == j || ego.gone || areas.is_empty() {
                 continue;
             }
             let meeting = Meeting {
@@ -432,6 +434,10 @@ fn mind<'s, R: Rules + Clone>(
             }
         }
     })
+}
+
+fn is_shielded<R: Rules>(mind: &Mind<'_, R>) -> bool {
+    matches!(mind, Mind::Shielded(_) | Mind::Waiting(..))
 }
 
 fn clock<R: Rules>(mind: &Mind<'_, R>, numbers: &Numbers, outside: f64, rng: &mut Rng) -> Clock {

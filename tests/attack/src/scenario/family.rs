@@ -350,7 +350,7 @@ pub const FAMILIES: &[Family] = &[
     },
     Family {
         name: "everything",
-        about: "gaps, faults, errors, undecided tracks, other clocks and all vehicles at once",
+        about: "gaps, faults or undecided tracks, errors, other clocks and all kinds of vehicles at once",
         ways: |rng| match rng.below(4) {
             0 => sketch::merge(4, Users::Mixed, rng),
             1 => sketch::crossroads(9, Users::Mixed, rng),
@@ -358,15 +358,19 @@ pub const FAMILIES: &[Family] = &[
             _ => sketch::star(6, Users::Mixed, rng),
         },
         terms: |rng| Terms::usual(rng).blurred(rng).other_times(rng),
-        sensing: |rng| Sensing {
-            gaps: rng.pick(&[0.0, 0.01, 0.1]),
-            bursts: rng.pick(&[0.0, 0.01]),
-            faults: rng.pick(&[0.0, 0.01]),
-            undecided: true,
-            blinking: true,
-            ..Sensing::PLAIN
+        sensing: |rng| {
+            // Candidates take room, and of a track that is not watched nothing is known if its state is not a number.
+            let undecided = rng.chance(0.5);
+            Sensing {
+                gaps: rng.pick(&[0.0, 0.01, 0.1]),
+                bursts: rng.pick(&[0.0, 0.01]),
+                faults: if undecided { 0.0 } else { 0.02 },
+                undecided,
+                blinking: true,
+                ..Sensing::PLAIN
+            }
         },
-        cast: |rng| Cast::one(1 + rng.below(10)),
+        cast: |rng| Cast::one(1 + rng.below(7)),
         ..ONE
     },
     Family {
