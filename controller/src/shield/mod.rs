@@ -456,11 +456,13 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
                 other.pair.other.note_again(other.sighting(contract).rest);
             }
         }
+        // A call that is not on time says nothing of how long somebody has moved or rested.
+        let on_time = !matches!(tick, Tick::Next { on_time: false, .. });
         let line = |path: PathId| self.way.path(path).map_or(FAR, |path| path.line());
         // Of the periods in which there was no call, nothing is known.
         for missed in (0..periods.min(LOST)).rev() {
             let seen = |sighting: Sighting| {
-                if missed == 0 {
+                if missed == 0 && on_time {
                     sighting
                 } else {
                     unseen(sighting)

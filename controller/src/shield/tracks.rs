@@ -9,7 +9,7 @@ use super::rules::Rules;
 use super::waiting::{RestState, Sighting};
 use crate::fault::Fault;
 use crate::instant::Instant;
-use crate::junction::zone::{FAR, Zone};
+use crate::junction::zone::Zone;
 use crate::junction::{PathId, RouteConflict, Way};
 use crate::observation::{Candidate, Observation, Track, Vehicle};
 use heapless::Vec;
@@ -148,8 +148,7 @@ impl<const N: usize> Tracks<N> {
             }
         }
         for other in &mut self.0 {
-            let conflict = way.conflict(other.path);
-            let ahead = conflict.and_then(|conflict| other.entry::<R>(conflict, ego.least));
+            let ahead = other.entry::<R>(way, ego.least, 0.0);
             other.gone |= ahead.is_none();
         }
         findings
@@ -178,10 +177,9 @@ impl<const N: usize> Tracks<N> {
             (None, Ok(vehicle)) => {
                 let other = Other::new(contract, number, path, &vehicle, now);
                 // One that seems to have left may seem not to have in the next observation: it is known from now on.
-                let least = other.bounds.s.from - 2.0 * contract.position_error;
-                let conflict = way.conflict(path);
-                if let Some(entry) = conflict.and_then(|c| entry::<R>(c, ego.least, least)) {
-                    self.add::<R>(way, ego, (other, entry), findings);
+                let spare = 2.0 * contract.position_error;
+                if other.entry::<R>(way, ego.least, spare).is_some() {
+                    self.add::<R>((contract, way), ego, other, findings);
                 }
             }
             // Nobody knows where it is: its zones may be occupied.
@@ -194,38 +192,44 @@ impl<const N: usize> Tracks<N> {
         }
     }
 
-    /// Adds a newcomer whose first zone the ego enters at `entry` (m). Without room the one whose zones are farthest
-    /// is not watched.
+    /// Adds a newcomer. Without room the one whose zones the ego enters last is not watched.
     fn add<R: Rules>(
         &mut self,
-        way: Way<'_>,
+        (contract, way): (&Contract, Way<'_>),
         ego: &Own,
-        (mut newcomer, mut entry): (Other, f32),
+        mut newcomer: Other,
         findings: &mut Findings,
     ) {
-        if self.0.is_full()
-            && let Some(gone) = self.0.iter().position(|other| other.gone)
-        {
-            self.0.swap_remove(gone);
-        }
         if self.0.is_full() {
-            let mut replace = |other: &mut Other| {
-                let conflict = way.conflict(other.path);
-                let its = conflict.and_then(|conflict| other.entry::<R>(conflict, ego.least));
-                let its = its.unwrap_or(FAR);
-                if its > entry {
+            // What has left by more than sensors can err in two observations will never seem not to have.
+            let spare = 2.0 * contract.position_error;
+            let for_good = |other: &Other| other.entry::<R>(way, ego.least, spare).is_none();
+            if let Some(place) = self
+                .0
+                .iter()
+                .position(|other| other.gone && for_good(other))
+            {
+                self.0.swap_remove(place);
+            }
+        }
+        if !self.0.is_full() {
+            let _ = self.0.push(newcomer);
+            return;
+        }
+        let Some(mut entry) = newcomer.entry::<R>(way, ego.least, 0.0) else {
+            // It has left, and there is no room to remember it.
+            return;
+        };
+        for other in self.0.iter_mut().filter(|other| !other.gone) {
+            match other.entry::<R>(way, ego.least, 0.0) {
+                Some(its) if its > entry => {
                     core::mem::swap(other, &mut newcomer);
                     entry = its;
                 }
-            };
-            self.0.iter_mut().for_each(&mut replace);
-            if entry < FAR {
-                findings.close(newcomer.number, entry);
+                _ => {}
             }
-            return;
         }
-        // There is room.
-        let _ = self.0.push(newcomer);
+        findings.close(newcomer.number, entry);
     }
 }
 
@@ -243,14 +247,6 @@ fn unplaced(way: Way<'_>, path: PathId, ego: f32) -> Option<f32> {
             .filter_map(|(_, conflict)| first(conflict))
             .reduce(f32::min),
     }
-}
-
-/// Where (m) the ego enters the first zone that neither it, at `ego` (m) at least, nor the other, at `other` (m) at least,
-/// has left.
-fn entry<R: Rules>(conflict: &RouteConflict, ego: f32, other: f32) -> Option<f32> {
-    let ahead = |zone: &&Zone| ego < zone.ego.to && !R::left(zone, other);
-    let entries = conflict.zones().filter(ahead).map(|zone| zone.ego.from);
-    entries.reduce(f32::min)
 }
 
 impl Other {
@@ -325,9 +321,13 @@ impl Other {
         }
     }
 
-    /// Where (m) the ego, which is at `ego` (m) at least, enters the first zone that neither has left.
-    fn entry<R: Rules>(&self, conflict: &RouteConflict, ego: f32) -> Option<f32> {
-        entry::<R>(conflict, ego, self.bounds.s.from)
+    /// Where (m) the ego, which is at `ego` (m) at least, enters the first zone that neither has left by more than
+    /// `spare` (m).
+    fn entry<R: Rules>(&self, way: Way<'_>, ego: f32, spare: f32) -> Option<f32> {
+        let least = self.bounds.s.from - spare;
+        let ahead = |zone: &&Zone| ego - spare < zone.ego.to && !R::left(zone, least);
+        let zones = way.conflict(self.path)?.zones().filter(ahead);
+        zones.map(|zone| zone.ego.from).reduce(f32::min)
     }
 
     /// Whether the ego is ahead of it in lane number `index`, and it keeps its distance.
