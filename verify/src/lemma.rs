@@ -6,10 +6,12 @@
 //! Every lemma is also asked with a broken rule, and must then fail.
 
 mod apart;
+mod coast;
 mod contract;
 mod departure;
 mod entry;
 mod formula;
+mod limit;
 mod motion;
 mod reach;
 mod symbol;
@@ -152,6 +154,8 @@ impl Settled {
 pub fn lemmas() -> Vec<Lemma> {
     let groups = [
         reach::lemmas(),
+        coast::lemmas(),
+        limit::lemmas(),
         departure::lemmas(),
         tail::lemmas(),
         apart::lemmas(),

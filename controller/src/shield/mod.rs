@@ -13,6 +13,7 @@ pub(crate) mod door;
 mod hazard;
 pub mod margin;
 mod memory;
+mod own;
 mod plan;
 pub(crate) mod precedence;
 pub mod reach;
@@ -39,6 +40,7 @@ use clock::{Clock, Tick};
 use core::marker::PhantomData;
 use hazard::{Hazards, Passage};
 use memory::Memory;
+use own::Own;
 use precedence::PairMemory;
 use tracks::{Findings, Tracks};
 use verified::{Verified, best, passage_margin, spare};
@@ -154,7 +156,7 @@ impl core::error::Error for NotReady {}
 
 /// What a decision is made of, once the observation is noted.
 struct Scene<'s> {
-    ego: &'s Vehicle,
+    ego: &'s Own,
     hazards: &'s Hazards,
     /// The accelerations that are in effect: least and most.
     in_effect: [f32; 2],
@@ -300,6 +302,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         let contract = &self.contract;
         let ego = door::ego(self.way, contract, &observation.ego).map_err(NotReady::Fault)?;
         let mut next = self.copy();
+        let (ego, _) = next.memory.note(contract, &ego, now);
         let findings = next.look((now, Tick::First), &ego, observation);
         let mut hazards = Hazards::new();
         hazards.add::<N, R>(contract, self.way, (&ego, &next.tracks), findings.closed);
@@ -340,6 +343,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         }
         let contract = &self.contract;
         let ego = door::ego(self.way, contract, &observation.ego)?;
+        let ego = Own::new(contract, &ego, -FAR);
         let mut tracks = Tracks::<N>::new();
         let now = Instant::default();
         let findings = tracks.note::<R>(contract, self.way, now, &ego, observation);
@@ -414,7 +418,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
     fn look(
         &mut self,
         when: (Instant, Tick),
-        ego: &Vehicle,
+        ego: &Own,
         observation: &Observation<'_>,
     ) -> Findings {
         let (now, _) = when;
@@ -427,7 +431,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
     }
 
     /// Notes who has arrived and who rests, and over whom the ego has precedence.
-    fn wait(&mut self, (now, tick): (Instant, Tick), ego: Option<&Vehicle>) {
+    fn wait(&mut self, (now, tick): (Instant, Tick), ego: Option<&Own>) {
         let contract = &self.contract;
         let Some(rule) = contract.precedence else {
             return;
@@ -452,11 +456,13 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
                 other.pair.other.note_again(other.sighting(contract).rest);
             }
         }
+        // A call that is not on time says nothing of how long somebody has moved or rested.
+        let on_time = !matches!(tick, Tick::Next { on_time: false, .. });
         let line = |path: PathId| self.way.path(path).map_or(FAR, |path| path.line());
         // Of the periods in which there was no call, nothing is known.
         for missed in (0..periods.min(LOST)).rev() {
             let seen = |sighting: Sighting| {
-                if missed == 0 {
+                if missed == 0 && on_time {
                     sighting
                 } else {
                     unseen(sighting)
@@ -506,7 +512,8 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         (proposal, recheck): (f32, bool),
     ) -> Decision {
         let (now, _) = when;
-        let deviated = !self.memory.note(&self.contract, ego, now);
+        let (ego, possible) = self.memory.note(&self.contract, ego, now);
+        let (ego, deviated) = (&ego, !possible);
         if deviated {
             self.tracks.iter_mut().for_each(|other| other.counted = 0);
         }
@@ -674,7 +681,7 @@ fn tells_apart(contract: &Contract, way: Way<'_>) -> Result<(), EnterError> {
 fn settle<const N: usize, R: Rules>(
     contract: &Contract,
     way: Way<'_>,
-    ego: &Vehicle,
+    ego: &Own,
     tracks: &mut Tracks<N>,
 ) {
     for other in tracks.iter_mut() {

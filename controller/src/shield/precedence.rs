@@ -5,7 +5,7 @@
 
 use super::contract::{Contract, Precedence};
 use super::rules::Rules;
-use super::waiting::Presence;
+use super::waiting::{Presence, dip};
 use crate::instant::micros;
 use crate::junction::RightOfWay;
 use crate::junction::zone::Zone;
@@ -80,7 +80,7 @@ impl PairMemory {
             return;
         }
         // It has been there for all these periods, however it crept.
-        let slow = contract.rest_speed() + 2.0 * contract.speed_error;
+        let slow = contract.rest_speed() + 2.0 * contract.speed_error + 0.5 * dip(contract);
         let crept = f32::from(periods) * contract.period * slow + contract.position_error;
         let inside = |zone: &Zone| s - crept > zone.ego.from && s < zone.ego.to;
         let held = (0_u32..).zip(zones).fold(0, |held, (number, zone)| {

@@ -156,19 +156,20 @@ fn hazards(
 ) -> Hazards {
     let way = site.way(EGO).unwrap();
     let ego = ego(site, own);
+    let own = Own::new(contract, &ego, -FAR);
     let seen: std::vec::Vec<_> = others
         .iter()
         .map(|&(number, state, _)| track(site, number, state))
         .collect();
     let seen = Observation { ego, tracks: &seen };
     let mut tracks = Tracks::<8>::new();
-    let findings = tracks.note::<Sound>(contract, way, Instant::from_millis(1), &ego, &seen);
+    let findings = tracks.note::<Sound>(contract, way, Instant::from_millis(1), &own, &seen);
     assert_eq!(findings, Findings::default());
     for (other, &(_, _, claims)) in tracks.iter_mut().zip(others) {
         other.claims = claims;
     }
     let mut hazards = Hazards::new();
-    hazards.add::<8, Sound>(contract, way, (&ego, &tracks), None);
+    hazards.add::<8, Sound>(contract, way, (&own, &tracks), None);
     hazards
 }
 

@@ -1,14 +1,14 @@
 //! Who has arrived, and who rests for how long, while two vehicles wait for each other.
 
 use super::contract::{Contract, Precedence};
+use super::own::Own;
 use crate::instant::{Instant, micros};
 use crate::junction::zone::Span;
-use crate::observation::Vehicle;
 
 /// Whether a vehicle is at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum RestState {
-    /// Nobody takes it for one at rest.
+    /// It moves, and did so since it was last seen to: nobody takes it for one at rest.
     No,
     /// Somebody may, who sees it otherwise.
     Perhaps,
@@ -20,8 +20,8 @@ impl RestState {
     /// What a vehicle does that is sensed at `speed` (m/s); to be at rest is to have [`Contract::rest_speed`] or less.
     ///
     /// One surely at rest here is faster than that by twice the error at most, and any other
-    /// sensor shows one error more: for that one it is perhaps at rest. One that is certainly not at rest was not
-    /// so slow either at any moment between two such observations: [`dip`].
+    /// sensor shows one error more: for that one it is perhaps at rest. One that moves could not have been
+    /// surely at rest between two calls that both show it.
     #[must_use]
     pub fn of(contract: &Contract, speed: f32) -> Self {
         let (slow, error) = (contract.rest_speed(), contract.speed_error);
@@ -35,16 +35,16 @@ impl RestState {
     }
 }
 
-/// How much slower (m/s) a vehicle can have been between two calls than at both of them: braking as hard as it can,
-/// and then accelerating as hard.
-fn dip(contract: &Contract) -> f32 {
-    let (a, b) = (contract.other.acceleration, contract.other.braking);
-    (contract.period + 2.0 * contract.jitter) * (a * b / (a + b))
+/// By how much (m/s) a vehicle may have been slower, or faster, between two calls than at both.
+pub(super) fn dip(contract: &Contract) -> f32 {
+    let (up, down) = (contract.other.acceleration, contract.other.braking);
+    // It brakes first and then accelerates, or the other way round.
+    (contract.period + 2.0 * contract.jitter) * up * down / (up + down)
 }
 
-/// How many calls in a row have to see a vehicle move, so that everybody has seen it at least once.
-fn witnesses(contract: &Contract) -> u8 {
-    // Two calls are a period apart, or less with jitter; three are a longest period apart.
+/// Calls in a row that show a vehicle move, after which every other shield had a call in the meantime.
+fn calls_in_between(contract: &Contract) -> u8 {
+    // Two calls are a period and twice the jitter apart at most, three at least two periods less twice the jitter.
     if contract.jitter > 0.0 { 3 } else { 2 }
 }
 
@@ -141,7 +141,7 @@ impl Arrival {
 pub(super) struct Standstill {
     pub(super) perhaps: u16,
     pub(super) surely: u16,
-    /// Calls in a row that saw it move: perhaps for these moments only, which somebody else may have missed.
+    /// In how many of the last calls it was seen to move: perhaps between two calls of somebody else only.
     moved: u8,
 }
 
@@ -157,16 +157,16 @@ impl Default for Standstill {
 }
 
 impl Standstill {
-    /// One more period; so many `witnesses` of its motion leave no doubt.
-    fn note(&mut self, rest: RestState, arrived: Arrived, witnesses: u8) {
+    /// One more period. It has moved for everybody after so many `calls` in a row that show it.
+    fn note(&mut self, rest: RestState, arrived: Arrived, calls: u8) {
         self.moved = match rest {
-            RestState::No => self.moved.saturating_add(1),
-            _ => 0,
+            RestState::No => self.moved.saturating_add(1).min(calls),
+            RestState::Perhaps | RestState::Surely => 0,
         };
         let count = |keeps: bool, periods: u16| {
             if keeps { periods.saturating_add(1) } else { 0 }
         };
-        let keeps = arrived != Arrived::Not && self.moved < witnesses;
+        let keeps = arrived != Arrived::Not && self.moved < calls;
         self.perhaps = count(keeps, self.perhaps);
         let sure = rest == RestState::Surely && arrived == Arrived::Surely;
         self.surely = count(sure, self.surely);
@@ -191,13 +191,9 @@ pub struct Sighting {
 
 impl Sighting {
     /// What is sensed of the ego, or that it is not.
-    pub(super) fn of_ego(contract: &Contract, ego: Option<&Vehicle>) -> Self {
-        let error = contract.position_error;
+    pub(super) fn of_ego(contract: &Contract, ego: Option<&Own>) -> Self {
         Self {
-            s: ego.map(|ego| Span {
-                from: ego.s - error,
-                to: ego.s + error,
-            }),
+            s: ego.map(|ego| ego.span(contract)),
             rest: ego.map_or(RestState::Perhaps, |ego| RestState::of(contract, ego.speed)),
         }
     }
@@ -218,8 +214,8 @@ impl Presence {
             None if self.arrival.by.is_some() => Arrived::Surely,
             None => Arrived::Perhaps,
         };
-        self.standstill
-            .note(sighting.rest, arrived, witnesses(contract));
+        let calls = calls_in_between(contract);
+        self.standstill.note(sighting.rest, arrived, calls);
     }
 
     /// Notes what is sensed within a period that has been noted already.
@@ -232,6 +228,12 @@ impl Presence {
     /// Nothing is known any more of how long it has rested.
     pub fn forget(&mut self) {
         self.standstill = Standstill::default();
+    }
+
+    /// Periods for which it has perhaps, and for which it has surely rested.
+    #[must_use]
+    pub fn rested(&self) -> [u16; 2] {
+        [self.standstill.perhaps, self.standstill.surely]
     }
 
     /// Whether this vehicle came before `other` while both rest, so that the other knows it, too: by how much

@@ -3,6 +3,9 @@
 use super::*;
 use crate::fault::{Field, InputFault, Subject};
 
+/// Sets one number of a vehicle.
+type Change = fn(&mut Vehicle, f32);
+
 /// What is wrong with a vehicle on the ego's path, or on the first other's.
 fn refused(change: impl Fn(&mut Vehicle)) -> [Option<InputFault>; 2] {
     let site = crossing();
@@ -26,16 +29,16 @@ fn refused(change: impl Fn(&mut Vehicle)) -> [Option<InputFault>; 2] {
 #[test]
 fn every_number_is_checked() {
     assert_eq!(refused(|_| {}), [None, None]);
-    let wrong: [(Field, fn(&mut Vehicle, f32)); 6] = [
+    let wrong: [(Field, Change); 6] = [
         (Field::ArcLength, |v, x| v.s = x),
         (Field::Speed, |v, x| v.speed = x),
         (Field::Position, |v, x| v.pose.position.x = x),
         (Field::Position, |v, x| v.pose.position.y = x),
         (Field::Direction, |v, x| {
-            v.pose.direction = unit(x, v.pose.direction.y)
+            v.pose.direction = unit(x, v.pose.direction.y);
         }),
         (Field::Direction, |v, x| {
-            v.pose.direction = unit(v.pose.direction.x, x)
+            v.pose.direction = unit(v.pose.direction.x, x);
         }),
     ];
     for (field, set) in wrong {
