@@ -60,7 +60,11 @@ pub fn waits<const N: usize>(
     setting.rights = story.rights;
     let mut watches = [Watch::<N>::new(false); N];
     let mut gone = [false; N];
-    let all = story.arrives.iter().max().map_or(0, |last| u16::from(*last) + 2);
+    let all = story
+        .arrives
+        .iter()
+        .max()
+        .map_or(0, |last| u16::from(*last) + 2);
     for period in 0..periods {
         let bodies = story.arrives.map(|arrives| body(arrives, period));
         let now = Instant::from_millis(1_000 + 100 * u64::from(period));

@@ -54,7 +54,10 @@ fn deadlocks<const N: usize>(within: u8) {
             *kinds.entry(deadlock::kind(story, waits)).or_insert(0) += 1;
         }
     }
-    println!("{} stories of arrivals, rights and late starts; somebody waits for ever:", stories.len());
+    println!(
+        "{} stories of arrivals, rights and late starts; somebody waits for ever:",
+        stories.len()
+    );
     for (kind, number) in kinds {
         println!("  {number}: {kind}");
     }
@@ -69,5 +72,9 @@ fn main() -> ExitCode {
         deadlocks::<2>(6);
         arguments.all(suite::two(arguments.disturbances))
     };
-    if sound { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    if sound {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
 }

@@ -29,7 +29,8 @@ pub fn two(disturbances: u8) -> Vec<Named<2>> {
 pub fn turns(disturbances: u8) -> Setting<2> {
     Setting {
         approach: Approach::Brisk,
-        starts: [-1, -4],
+        starts: [-4, -7],
+        arrive_by: 9,
         phases: [0, 1],
         disturbances,
         ..Setting::new(5, 0).right(0, 1)
@@ -52,8 +53,7 @@ pub fn misses(disturbances: u8) -> Setting<2> {
 pub fn late(disturbances: u8) -> Setting<2> {
     Setting {
         late: true,
-        starts: [-6, -1],
-        arrive_by: 9,
+        starts: [-7, -4],
         ..Setting {
             rights: Setting::<2>::new(5, 0).rights,
             ..turns(disturbances)
@@ -84,7 +84,8 @@ pub fn jitter(disturbances: u8) -> Setting<2> {
     Setting {
         phases: [0, 2],
         top: 1,
-        arrive_by: 12,
+        starts: [-9, -14],
+        arrive_by: 16,
         ..turns(disturbances).jitter(5)
     }
 }
@@ -94,7 +95,7 @@ pub fn jitter(disturbances: u8) -> Setting<2> {
 pub fn creeping(disturbances: u8) -> Setting<2> {
     Setting {
         approach: Approach::Creeping,
-        starts: [-1, -1],
+        starts: [-3, -3],
         top: 1,
         longest: 12,
         disturbances: disturbances.saturating_sub(1),
@@ -110,10 +111,10 @@ pub fn arrivals(tie: u16, disturbances: u8) -> Setting<2> {
         misses: true,
         late: true,
         phases: [0, 1],
-        starts: [-1, -1],
-        arrive_by: 8 + 2 * u8::try_from(tie).unwrap_or(0),
+        starts: [-2, -2],
+        arrive_by: 7 + 2 * u8::try_from(tie).unwrap_or(0),
         disturbances: disturbances.saturating_sub(1),
-        longest: 3,
+        longest: 2,
         top: 1,
         ..Setting::new(0, tie)
     }
@@ -124,9 +125,9 @@ pub fn arrivals(tie: u16, disturbances: u8) -> Setting<2> {
 pub fn three(disturbances: u8) -> Vec<Named<3>> {
     let turns = Setting {
         approach: Approach::Brisk,
-        starts: [-1, -4, -6],
+        starts: [-4, -7, -9],
         phases: [0, 1, 0],
-        arrive_by: 9,
+        arrive_by: 11,
         top: 1,
         disturbances,
         ..Setting::new(5, 0).right(0, 1).right(1, 2).right(0, 2)

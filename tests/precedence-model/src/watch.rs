@@ -77,7 +77,7 @@ impl<const N: usize> Watch<N> {
             .map(|other| self.pairs[other].other)
             .chain([self.presence]);
         let known = all
-            .map(|presence| presence.rested()[0])
+            .flat_map(|presence| presence.rested())
             .filter(|&periods| periods < u16::MAX);
         known.max().unwrap_or(0)
     }

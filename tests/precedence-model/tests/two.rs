@@ -24,17 +24,32 @@ fn never_both_in_turns() {
 
 #[test]
 fn never_both_when_frames_and_calls_are_missed() {
-    is_sound("misses", suite::misses(1));
+    let longest = 14;
+    is_sound(
+        "misses",
+        Setting {
+            longest,
+            ..suite::misses(1)
+        },
+    );
 }
 
 #[test]
 fn never_both_when_a_shield_starts_late() {
-    is_sound("late", suite::late(1));
+    is_sound("late", suite::late(0).right(1, 0));
+    is_sound("late equals", suite::late(0));
 }
 
 #[test]
 fn never_both_in_spite_of_errors_of_speed() {
-    is_sound("noise", suite::noise(0));
+    let longest = 10;
+    is_sound(
+        "noise",
+        Setting {
+            longest,
+            ..suite::noise(0)
+        },
+    );
 }
 
 #[test]
@@ -77,7 +92,7 @@ fn errors_of_sensed_places_beyond_the_contract_are_found() {
 
 #[test]
 fn a_late_shield_that_takes_everybody_for_one_that_just_moved_is_found() {
-    let model = Watched::<2, Sound>::new(suite::late(0).right(0, 1)).hasty();
+    let model = Watched::<2, Sound>::new(suite::late(0).right(1, 0)).hasty();
     let outcome = run("hasty", model);
     assert!(outcome.both.is_some());
 }
