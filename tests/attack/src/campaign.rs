@@ -59,29 +59,33 @@ fn by_site(from: u64, count: u64) -> impl Iterator<Item = Range<u64>> {
         .map(move |site| (site * SHARE).max(from)..((site + 1) * SHARE).min(to))
 }
 
-/// Scenarios of each family in a round.
-const ROUND: u64 = 4 * SHARE;
-
 /// Some scenarios of every family after the other; rounds are the same on any number of threads.
 #[derive(Clone, Copy, Debug)]
 pub struct Round {
-    next: u64,
+    first: u64,
+    number: u64,
 }
 
 impl Round {
     /// The first round begins with this seed.
     #[must_use]
     pub fn from(seed: u64) -> Self {
-        Self { next: seed }
+        Self {
+            first: seed,
+            number: 0,
+        }
     }
 
     /// What came of the next round, for each of the `families`.
     pub fn next<R: Rules + Clone>(&mut self, families: &[&Family]) -> Vec<Tally> {
-        let from = self.next;
-        self.next += ROUND;
+        let Self { first, number } = *self;
+        self.number += 1;
         let numbered = families.iter().enumerate();
         let jobs: Vec<(usize, &Family, Range<u64>)> = numbered
-            .flat_map(|(i, &family)| by_site(from, ROUND).map(move |seeds| (i, family, seeds)))
+            .flat_map(|(i, &family)| {
+                let count = family.sites * SHARE;
+                by_site(first + number * count, count).map(move |seeds| (i, family, seeds))
+            })
             .collect();
         let done: Vec<(usize, Tally)> = jobs
             .into_par_iter()

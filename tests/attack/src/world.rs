@@ -47,8 +47,8 @@ pub struct World<'s, R: Rules> {
     clocks: Vec<Clock>,
     /// What vehicle i owes vehicle j, at i × count + j.
     duties: Vec<Duty>,
-    /// Vehicles that have a shield, switched on or not.
-    shielded: Vec<usize>,
+    /// Vehicles that others have to be courteous to: those with a shield, switched on or not, or the plain rule.
+    driven: Vec<usize>,
     lines: Vec<f64>,
     /// Where each vehicle has passed all crossings with those that are there.
     clear: Vec<f64>,
@@ -114,9 +114,9 @@ impl<'s, R: Rules + Clone> World<'s, R> {
             .iter()
             .map(|mind| clock(mind, &numbers, setup.outside.jitter, &mut rng))
             .collect();
-        let shielded = minds.iter().filter(|mind| !matches!(mind, Mind::Human(_)));
+        let driven = minds.iter().filter(|mind| is_driven(mind));
         let outcome = Outcome {
-            shielded: shielded.count() as u64,
+            shielded: driven.count() as u64,
             closest: f64::INFINITY,
             ..Outcome::default()
         };
@@ -124,7 +124,7 @@ impl<'s, R: Rules + Clone> World<'s, R> {
             setup,
             numbers,
             duties: vec![Duty::default(); cars.len() * cars.len()],
-            shielded: (0..cars.len()).filter(|&i| is_shielded(&minds[i])).collect(),
+            driven: (0..cars.len()).filter(|&i| is_driven(&minds[i])).collect(),
             lines: cars.iter().map(|car| setup.site.line(car.lane)).collect(),
             clear: (0..cars.len()).map(|i| clear(setup, i)).collect(),
             judge: Judge::new(cars.len()),
@@ -164,8 +164,7 @@ impl<'s, R: Rules + Clone> World<'s, R> {
             Mind::Waiting(..) | Mind::Human(_) | Mind::Plain(_) => true,
         });
         let passed = |i: &usize| {
-            let driven = !matches!(self.minds[*i], Mind::Human(_));
-            driven && (self.bodies[*i].gone || self.bodies[*i].state.s >= self.clear[*i])
+            is_driven(&self.minds[*i]) && (self.bodies[*i].gone || self.bodies[*i].state.s >= self.clear[*i])
         };
         self.outcome.through = (0..self.minds.len()).filter(passed).count() as u64;
         self.outcome.closest = self.judge.closest;
@@ -251,10 +250,9 @@ impl<'s, R: Rules + Clone> World<'s, R> {
     /// Whom the human of vehicle `i` is after: the driven vehicle whose common zone is nearest.
     fn prey(&self, i: usize) -> Option<Prey<'s>> {
         let me = &self.bodies[i];
-        let driven = (0..self.minds.len()).filter(|&j| {
-            j != i && !matches!(self.minds[j], Mind::Human(_)) && !self.bodies[j].gone
-        });
-        let meeting = driven.filter_map(|j| {
+        let driven = self.driven.iter().copied();
+        let others = driven.filter(|&j| j != i && !self.bodies[j].gone);
+        let meeting = others.filter_map(|j| {
             let ego = &self.bodies[j];
             let areas = self.setup.site.areas(ego.lane, me.lane);
             let ahead = areas.iter().filter(|area| {
@@ -299,7 +297,7 @@ impl<'s, R: Rules + Clone> World<'s, R> {
     fn humanly(&mut self, i: usize, tick: u64, wanted: f64) -> f64 {
         let (site, count) = (self.setup.site, self.bodies.len());
         let mut limit = wanted;
-        for &j in &self.shielded {
+        for &j in &self.driven {
             let (me, ego) = (&self.bodies[i], &self.bodies[j]);
             let areas = site.areas(ego.lane, me.lane);
             if i == j || ego.gone || areas.is_empty() {
@@ -355,9 +353,9 @@ impl<'s, R: Rules + Clone> World<'s, R> {
 
     /// Whether all driven vehicles are through, with some room behind them.
     fn is_over(&self) -> bool {
-        (0..self.minds.len()).all(|i| {
+        self.driven.iter().all(|&i| {
             let body = &self.bodies[i];
-            matches!(self.minds[i], Mind::Human(_)) || body.gone || body.state.s > self.clear[i] + 12.0
+            body.gone || body.state.s > self.clear[i] + 12.0
         })
     }
 
@@ -436,8 +434,8 @@ fn mind<'s, R: Rules + Clone>(
     })
 }
 
-fn is_shielded<R: Rules>(mind: &Mind<'_, R>) -> bool {
-    matches!(mind, Mind::Shielded(_) | Mind::Waiting(..))
+fn is_driven<R: Rules>(mind: &Mind<'_, R>) -> bool {
+    !matches!(mind, Mind::Human(_))
 }
 
 fn clock<R: Rules>(mind: &Mind<'_, R>, numbers: &Numbers, outside: f64, rng: &mut Rng) -> Clock {

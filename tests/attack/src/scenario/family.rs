@@ -25,6 +25,8 @@ pub struct Family {
     pub ordered: bool,
     /// How long a scenario lasts at most, in s.
     pub seconds: f64,
+    /// Sites in a round of a campaign: more, where scenarios have fewer decisions.
+    pub sites: u64,
     /// The accelerations of others are searched for.
     pub searches: bool,
 }
@@ -39,6 +41,7 @@ const ONE: Family = Family {
     sensing: |_| Sensing::PLAIN,
     ordered: false,
     seconds: 18.0,
+    sites: 10,
     searches: false,
 };
 
@@ -48,6 +51,7 @@ const ALL: Family = Family {
     terms: |rng| Terms::usual(rng).perhaps_blurred(rng).among_equals(rng),
     cast: |rng| Cast::all(2 + rng.below(4)),
     seconds: 25.0,
+    sites: 3,
     ..ONE
 };
 
@@ -382,6 +386,7 @@ pub const FAMILIES: &[Family] = &[
             ..Cast::one(1 + rng.below(2))
         },
         seconds: 12.0,
+        sites: 3,
         searches: true,
         ..ONE
     },
