@@ -154,12 +154,13 @@ impl Settled {
 pub fn lemmas() -> Vec<Lemma> {
     let groups = [
         reach::lemmas(),
-        coast::lemmas(),
-        limit::lemmas(),
         departure::lemmas(),
         tail::lemmas(),
         apart::lemmas(),
         entry::lemmas(),
+        limit::lemmas(),
+        coast::lemmas(),
+        limit::unlimited_lemmas(),
     ];
     groups.into_iter().flatten().collect()
 }

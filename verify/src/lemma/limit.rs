@@ -8,36 +8,36 @@ use cede_controller::Real;
 use cede_controller::shield::{Contract, choice, margin};
 
 pub(super) fn lemmas() -> Vec<Lemma> {
-    vec![
-        Lemma::new(
-            [
-                "limit",
-                "the ego gets no faster than its limit, or than it is with what is in effect already, whenever the command takes effect",
-                "a command of `choice::most` or less; until the next one, and on for as long as that may come late",
-            ],
-            &limit(choice::most),
-            (
-                "the command before forgotten",
-                &limit(|contract, speed, _| choice::most(contract, speed, number(0.0))),
-            ),
+    vec![Lemma::new(
+        [
+            "limit",
+            "the ego gets no faster than its limit, or than it is with what is in effect already, whenever the command takes effect",
+            "a command of `choice::most` or less; until the next one, and on for as long as that may come late",
+        ],
+        &limit(choice::most),
+        (
+            "the command before forgotten",
+            &limit(|contract, speed, _| choice::most(contract, speed, number(0.0))),
         ),
-        Lemma::new(
-            [
-                "unlimited",
-                "up to the speed `unlimited` an ego that goes may go: `choice::most` is `go` or more",
-                "what is in effect is no harder than may be commanded; speeds err",
-            ],
-            &unlimited(margin::unlimited),
-            (
-                "the command before forgotten",
-                &unlimited(|contract| {
-                    let late =
-                        Term::of(contract.ego().acceleration) * Term::of(contract.switching());
-                    margin::unlimited::<Term>(contract) + late
-                }),
-            ),
+    )]
+}
+
+pub(super) fn unlimited_lemmas() -> Vec<Lemma> {
+    vec![Lemma::new(
+        [
+            "unlimited",
+            "up to the speed `unlimited` an ego that goes may go: `choice::most` is `go` or more",
+            "what is in effect is no harder than may be commanded; speeds err",
+        ],
+        &unlimited(margin::unlimited),
+        (
+            "the command before forgotten",
+            &unlimited(|contract| {
+                let late = Term::of(contract.ego().acceleration) * Term::of(contract.switching());
+                margin::unlimited::<Term>(contract) + late
+            }),
         ),
-    ]
+    )]
 }
 
 /// The speed after `time` at a constant acceleration; who comes to rest stays there.
