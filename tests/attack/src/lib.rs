@@ -1,6 +1,7 @@
 //! An attacker of the safety shield that shares nothing with the simulator.
 pub mod actuator;
 pub mod campaign;
+pub mod audit;
 pub mod body;
 pub mod error;
 pub mod hidden;
