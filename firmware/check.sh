@@ -11,8 +11,8 @@ flock 8
 firmware/setup.sh
 source "$build/env"
 target=thumbv7em-none-eabihf
-max_flash=65536
-max_ram=4096
+max_flash=98304
+max_ram=16384
 
 unset RUSTFLAGS
 export CARGO_TERM_QUIET=true
@@ -83,10 +83,10 @@ value() { sed -n "s/^$1: //p" "$build/log"; }
 # Everything in flash but the golden file: vectors, code, constants, weights, initial values.
 flash=$(arm-none-eabi-size -A "$elf" | awk '$1 ~ /^\.(vector_table|text|rodata|data|gnu\.sgstubs)$/ { sum += $2 } END { print sum }')
 ram=$(value "RAM to decide, bytes")
-preparing=$(value "RAM to prepare a scene, bytes")
+preparing=$(value "RAM to prepare a junction, bytes")
 echo "flash with weights, bytes: $flash (of $max_flash)"
 network=$(value "instructions of the network, most")
 echo "network 8-64-64-64-4, instructions for each of its 2 x 8,960 multiplications and additions: $(awk "BEGIN { printf \"%.2f\", $network / 17920 }")"
 [ "$flash" -le $max_flash ] || fail "more than $max_flash bytes of flash"
 [ "$ram" -le $max_ram ] || fail "more than $max_ram bytes of RAM to decide"
-[ "$preparing" -le $max_ram ] || fail "more than $max_ram bytes of RAM to prepare a scene"
+[ "$preparing" -le $max_ram ] || fail "more than $max_ram bytes of RAM to prepare a junction"

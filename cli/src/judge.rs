@@ -3,11 +3,14 @@
 use crate::drivers::Contender;
 use crate::failure::Failure;
 use crate::interrupt;
+use crate::left_out::LeftOut;
 use cede_controller::Contract;
 use cede_data::Dataset;
 use cede_sim::driver::{Baseline, FitError};
 use cede_sim::episode::Until;
-use cede_sim::evaluate::{Drive, Label, Mode, Protocol, Round, Selection, TableRow, evaluate};
+use cede_sim::evaluate::{
+    Drive, Evaluation, Label, Mode, Protocol, Round, Selection, TableRow, evaluate,
+};
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -120,6 +123,7 @@ impl Plan {
         let blocks = self.selections.len() * self.shields.len();
         let bar = progress(blocks * self.contenders.len());
         let mut rows = Vec::new();
+        let mut left_out = LeftOut::default();
         for &selection in &self.selections {
             let rounds = selection.rounds(dataset);
             if rounds.iter().all(|round| round.judged.is_empty()) {
@@ -132,7 +136,9 @@ impl Plan {
                 interrupt::check()?;
                 bar.set_message(format!("{selection}: {}", contender.name()));
                 match self.drive(contender, shield, &rounds) {
-                    Ok(drives) => {
+                    Ok(evaluations) => {
+                        let told = evaluations.into_iter().map(|e| left_out.drives(e));
+                        let drives: Vec<_> = bar.suspend(|| told.flatten().collect());
                         let row = TableRow::of(self.label(contender, selection, shield), &drives);
                         each(&row, &drives);
                         rows.push(row);
@@ -159,8 +165,8 @@ impl Plan {
         contender: &Contender,
         shield: Option<Contract>,
         rounds: &[Round<'a>],
-    ) -> Result<Vec<Drive<'a>>, FitError> {
-        let mut drives = Vec::new();
+    ) -> Result<Vec<Evaluation<'a>>, FitError> {
+        let mut evaluations = Vec::new();
         for round in rounds {
             let factory = contender.fit(&round.training, shield)?;
             let partner = match self.mode {
@@ -172,9 +178,9 @@ impl Plan {
                 until: self.until.into(),
                 seed: self.seed,
             };
-            drives.extend(evaluate(&*factory, &round.judged, protocol));
+            evaluations.push(evaluate(&*factory, &round.judged, protocol));
         }
-        Ok(drives)
+        Ok(evaluations)
     }
 
     fn label(

@@ -8,6 +8,7 @@ mod drivers;
 mod failure;
 mod interrupt;
 mod judge;
+mod left_out;
 mod plural;
 mod report;
 mod scene;

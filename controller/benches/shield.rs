@@ -2,12 +2,12 @@
 
 use cede_controller::policy::weights::Draft;
 use cede_controller::{
-    Contract, Controller, FeatureSet, Footprint, Mlp, Observation, Part, Perspective, Point,
-    Policy, Route, Scene, ScenePath as Path, Shield, Vehicle,
+    Class, Contract, Drive, FeatureSet, Footprint, Instant, Junction, Mlp, Observation, Part,
+    PathId, Perspective, Point, Policy, Route, Shield, Track, Vehicle,
 };
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
-use std::time::{Duration, Instant};
+use std::time::{self, Duration};
 
 const CROWDS: [usize; 3] = [1, 4, 8];
 
@@ -30,14 +30,19 @@ fn routes(others: usize) -> (Route<8>, Vec<Route<8>>) {
     )
 }
 
-fn scene(others: usize) -> Scene<8> {
+/// Eight others, and the ego's path.
+type Crossing = Junction<9, 32, 1>;
+
+const EGO: PathId = PathId::new(0);
+
+fn junction(others: usize) -> Crossing {
     let (ego, others) = routes(others);
-    let path = |route| Path {
-        route,
-        footprint: Footprint::PAPER,
-    };
-    let others: Vec<_> = others.iter().map(path).collect();
-    Scene::new(path(&ego), &others).expect("a scene")
+    let mut builder = Crossing::builder();
+    for route in std::iter::once(&ego).chain(&others) {
+        let path = builder.path(route, Class::Car, Footprint::PAPER);
+        path.expect("room for the path");
+    }
+    builder.build().expect("a junction")
 }
 
 /// Numbers in [0, 1), the same every time.
@@ -52,21 +57,49 @@ impl Numbers {
         (self.0 >> 40) as f32 / (1_u64 << 24) as f32
     }
 
-    fn vehicle(&mut self) -> Vehicle {
-        let (ego, _) = routes(1);
+    fn vehicle(&mut self, route: &Route<8>) -> Vehicle {
         let s = 80.0 * self.next();
         Vehicle {
             s,
             speed: 15.0 * self.next(),
-            pose: ego.pose(s),
+            pose: route.pose(s),
         }
     }
 
-    fn observation(&mut self, others: usize) -> Observation<8> {
-        Observation {
-            ego: self.vehicle(),
-            others: std::array::from_fn(|i| (i < others).then(|| self.vehicle())),
+    fn seen(&mut self, (ego, others): &(Route<8>, Vec<Route<8>>)) -> Seen {
+        let tracks = (1_u8..).zip(others);
+        Seen {
+            ego: self.vehicle(ego),
+            tracks: tracks
+                .map(|(i, route)| Track::on(i.into(), PathId::new(i), self.vehicle(route)))
+                .collect(),
         }
+    }
+}
+
+/// What an observation borrows.
+struct Seen {
+    ego: Vehicle,
+    tracks: Vec<Track>,
+}
+
+impl Seen {
+    fn observation(&self) -> Observation<'_> {
+        Observation {
+            ego: self.ego,
+            tracks: &self.tracks,
+        }
+    }
+}
+
+/// A clock that goes on by a period at each look.
+#[derive(Default)]
+struct Clock(u64);
+
+impl Clock {
+    fn now(&mut self) -> Instant {
+        self.0 += 100;
+        Instant::from_millis(self.0)
     }
 }
 
@@ -94,21 +127,29 @@ fn decisions(c: &mut Criterion) {
     let words = weights();
     let policy = Policy::new(&words).expect("a policy");
     for others in CROWDS {
-        let scene = scene(others);
+        let (routes, junction) = (routes(others), junction(others));
         let mut numbers = Numbers(1);
-        let seen: Vec<_> = (0..1024).map(|_| numbers.observation(others)).collect();
-        let mut i = 0;
+        let seen: Vec<_> = (0..1024).map(|_| numbers.seen(&routes)).collect();
+        let (mut clock, mut i) = (Clock::default(), 0);
         let mut next = || {
             i = (i + 1) % seen.len();
-            black_box(&seen[i])
+            (clock.now(), black_box(seen[i].observation()))
         };
-        let mut shield = Shield::<8>::new(Contract::WORST_CASE);
+        let mut shield =
+            Shield::<8>::enter(Contract::WORST_CASE, &junction, EGO).expect("a way in");
         c.bench_function(&format!("shield/{others}"), |b| {
-            b.iter(|| shield.filter(&scene, next(), black_box(1.0)));
+            b.iter(|| {
+                let (now, seen) = next();
+                shield.filter(now, &seen, black_box(1.0))
+            });
         });
-        let mut controller = Controller::new(policy, Contract::WORST_CASE, Part::Left);
+        let drive = Drive::new(policy, Contract::WORST_CASE, Part::Left);
+        let mut approach = drive.enter(&junction, EGO).expect("a way in");
         c.bench_function(&format!("decide/{others}"), |b| {
-            b.iter(|| controller.decide(&scene, next()));
+            b.iter(|| {
+                let (now, seen) = next();
+                approach.decide(now, &seen)
+            });
         });
     }
 }
@@ -117,15 +158,17 @@ fn decisions(c: &mut Criterion) {
 fn worst(_: &mut Criterion) {
     let words = weights();
     let policy = Policy::new(&words).expect("a policy");
+    let drive = Drive::new(policy, Contract::WORST_CASE, Part::Left);
     for others in CROWDS {
-        let scene = scene(others);
+        let (routes, junction) = (routes(others), junction(others));
         let mut numbers = Numbers(2);
-        let mut controller = Controller::new(policy, Contract::WORST_CASE, Part::Left);
+        let mut approach = drive.enter(&junction, EGO).expect("a way in");
+        let mut clock = Clock::default();
         let mut times: Vec<Duration> = (0..1_000_000)
             .map(|_| {
-                let seen = numbers.observation(others);
-                let start = Instant::now();
-                black_box(controller.decide(&scene, black_box(&seen)));
+                let (now, seen) = (clock.now(), numbers.seen(&routes));
+                let start = time::Instant::now();
+                black_box(approach.decide(now, black_box(&seen.observation())));
                 start.elapsed()
             })
             .collect();

@@ -5,15 +5,15 @@
 use cede_controller::kinematics::{STEP, State, advance};
 use cede_controller::policy::embedded;
 use cede_controller::{
-    Contract, Controller, Footprint, Observation, Part, Point, Policy, RightOfWay, Route, Scene,
-    ScenePath as Path, Vehicle,
+    Class, Contract, Drive, Footprint, Instant, Junction, Observation, Part, Point, Policy, Route,
+    Track, Vehicle,
 };
 use std::error::Error;
 
 /// Points of a route, at most.
 const POINTS: usize = 16;
-/// Others, at most.
-const OTHERS: usize = 1;
+/// Milliseconds from one decision to the next.
+const PERIOD: u64 = 100;
 
 /// A route through points in metres, as they come from the map.
 fn route(points: &[(f32, f32)]) -> Result<Route<POINTS>, Box<dyn Error>> {
@@ -43,28 +43,37 @@ fn sensed(route: &Route<POINTS>, state: State) -> Vehicle {
 
 fn main() -> Result<(), Box<dyn Error>> {
     // Once for this intersection: where the two go, and where they can touch.
-    let (mine, theirs) = (left_turn()?, route(&[(60.0, 2.0), (-60.0, 2.0)])?);
-    let path = |route| Path {
-        route,
-        footprint: Footprint::PAPER,
+    let (mine, theirs) = (left_turn()?, route(&[(60.0, 2.0), (-90.0, 2.0)])?);
+    let car = Footprint {
+        length: 4.6,
+        width: 1.9,
     };
-    let mut scene = Scene::<OTHERS>::new(path(&mine), &[path(&theirs)])?;
-    scene.set_right_of_way(0, RightOfWay::Other);
+    let mut builder = Junction::<2, { 2 * POINTS }>::builder();
+    let left = builder.path(&mine, Class::Car, car)?;
+    let oncoming = builder.path(&theirs, Class::Car, car)?;
+    builder.right_of_way(oncoming, left)?;
+    let junction = builder.build()?;
 
     // Once at start-up: the policy that ships, and what this vehicle and the others can do.
     let policy = Policy::new(embedded::words())?;
     let contract = Contract::builder().ego_braking(4.0).build()?;
-    let mut controller = Controller::<OTHERS>::new(policy, contract, Part::Left);
+    let drive = Drive::new(policy, contract, Part::Left);
 
+    // From here until the ego has left the junction.
+    let mut approach = drive.enter(&junction, left)?;
     let mut ego = State { s: 0.0, v: 7.0 };
     let mut other = State { s: 10.0, v: 8.0 };
     println!("time, s     s, m  v, m/s  command, m/s²  cause");
     for step in 0_u16..200 {
+        // Tracking reports whoever is there by its own number; a vehicle that has left the path is there no more.
+        let tracks = [Track::on(17, oncoming, sensed(&theirs, other))];
+        let there = other.s <= theirs.length();
         let seen = Observation {
             ego: sensed(&mine, ego),
-            others: [Some(sensed(&theirs, other))],
+            tracks: if there { &tracks } else { &[] },
         };
-        let decision = controller.decide(&scene, &seen);
+        let now = Instant::from_millis(PERIOD * u64::from(step));
+        let decision = approach.decide(now, &seen);
         if step % 5 == 0 {
             let (time, State { s, v }) = (f32::from(step) * STEP, ego);
             let command = decision.acceleration;

@@ -324,3 +324,137 @@ fn traffic<const N: usize>(
     });
     TrafficContext::new(ego.s, there)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::decision::Cause;
+    use crate::geometry::{Footprint, Point};
+    use crate::junction::{Class, Route};
+    use crate::policy::features::FeatureSet;
+    use crate::policy::weights::Perspective;
+    use crate::policy::weights::testing::file;
+    use std::vec::Vec;
+
+    type Site = Junction<4, 16, 1>;
+
+    fn route(points: &[(f32, f32)]) -> Route<4> {
+        Route::new(points.iter().map(|&(x, y)| Point::new(x, y))).unwrap()
+    }
+
+    /// The ego goes east; the others cross from the south, follow it, and come from the south further on.
+    fn site() -> Site {
+        let routes = [
+            route(&[(-60.0, 0.0), (120.0, 0.0)]),
+            route(&[(0.0, -60.0), (0.0, 60.0)]),
+            route(&[(-60.0, 0.0), (120.0, 0.0)]),
+            route(&[(30.0, -60.0), (30.0, 60.0)]),
+        ];
+        let mut builder = Site::builder();
+        builder.tolerance(0.0);
+        for route in &routes {
+            builder.path(route, Class::Car, Footprint::PAPER).unwrap();
+        }
+        builder.build().unwrap()
+    }
+
+    fn on(site: &Site, path: u8, s: f32, speed: f32) -> Vehicle {
+        let pose = site.polyline(PathId::new(path)).unwrap().pose(s);
+        Vehicle { s, speed, pose }
+    }
+
+    fn tracks(site: &Site, others: &[(u8, f32, f32)]) -> Vec<Track> {
+        let track = |&(path, s, speed): &(u8, f32, f32)| {
+            Track::on(
+                100 + u16::from(path),
+                PathId::new(path),
+                on(site, path, s, speed),
+            )
+        };
+        others.iter().map(track).collect()
+    }
+
+    fn drive(file: &[u32]) -> Drive<'_> {
+        let policy = Policy::new(file).unwrap();
+        Drive::new(policy, Contract::WORST_CASE, Part::Left)
+    }
+
+    #[test]
+    fn the_most_restrictive_proposal_is_the_one_that_counts() {
+        let file = file(FeatureSet::Route, Perspective::Ego, 16);
+        let site = site();
+        let decide = |others: &[(u8, f32, f32)]| {
+            let mut approach = drive(&file).enter(&site, PathId::new(0)).unwrap();
+            let tracks = tracks(&site, others);
+            let seen = Observation {
+                ego: on(&site, 0, 0.0, 5.0),
+                tracks: &tracks,
+            };
+            approach.ask(&seen).unwrap()
+        };
+        let (a, c) = ((1, 5.0, 4.0), (3, 20.0, 9.0));
+        let (first, third, both) = (decide(&[a]), decide(&[c]), decide(&[a, c]));
+        let least = if first.0 < third.0 { first } else { third };
+        assert_eq!(both, least);
+        assert_eq!(first.1.unwrap().other, 101);
+        assert_eq!(third.1.unwrap().other, 103);
+    }
+
+    #[test]
+    fn one_ahead_in_the_lane_is_a_leader_and_nobody_to_meet() {
+        let site = site();
+        let (way, ego) = (site.way(PathId::new(0)).unwrap(), on(&site, 0, 0.0, 5.0));
+        let tracks = tracks(&site, &[(2, 20.0, 4.0)]);
+        let nearby = nearby::<8>(way, &Contract::WORST_CASE, &ego, &tracks);
+        let leader = traffic(&ego, &nearby, 0).leader.unwrap();
+        assert_eq!(leader.speed, 4.0);
+        assert!((leader.gap - 15.0).abs() < 0.1, "{leader:?}");
+        assert!(!nearby[0].meets(&ego));
+    }
+
+    #[test]
+    fn with_nobody_to_meet_the_ego_drives_on_and_with_bad_senses_it_brakes() {
+        let file = file(FeatureSet::Route, Perspective::Ego, 16);
+        let site = site();
+        let mut approach = drive(&file).enter(&site, PathId::new(0)).unwrap();
+        let mut seen = Observation {
+            ego: on(&site, 0, 0.0, 5.0),
+            tracks: &[],
+        };
+        let decision = approach.decide(Instant::from_millis(0), &seen);
+        assert_eq!(
+            (decision.acceleration, decision.cause),
+            (FREE, Cause::Policy)
+        );
+        assert_eq!(decision.prediction, None);
+        seen.ego.s = f32::NAN;
+        let decision = approach.decide(Instant::from_millis(100), &seen);
+        assert!(matches!(decision.cause, Cause::Fallback(Fault::Input(_))));
+        assert_eq!(decision.acceleration, -3.0);
+    }
+
+    #[test]
+    fn another_policy_drives_on_with_the_same_plan() {
+        let (one, two) = [16, 32]
+            .map(|width| file(FeatureSet::Route, Perspective::Ego, width))
+            .into();
+        let site = site();
+        let mut approach = drive(&one).enter(&site, PathId::new(0)).unwrap();
+        let tracks = tracks(&site, &[(1, 5.0, 4.0)]);
+        let seen = Observation {
+            ego: on(&site, 0, 0.0, 5.0),
+            tracks: &tracks,
+        };
+        approach.decide(Instant::from_millis(0), &seen);
+        let plan = approach.plan();
+        assert!(plan.is_some());
+        approach.set_policy(Policy::new(&two).unwrap());
+        assert_eq!(approach.plan(), plan);
+    }
+
+    #[test]
+    fn an_approach_fits_its_share_of_the_memory() {
+        let size = size_of::<Approach<'_, '_>>();
+        assert!(size <= 2048, "{size}");
+    }
+}

@@ -16,10 +16,9 @@ mod replay;
 mod right_of_way;
 mod shielded;
 
-pub use crate::observation_model::scene;
 pub use baseline::{Baseline, FitError, UnknownBaseline};
 pub use constant::{InitialSpeed, MeanSpeed};
-pub use controller::{Cede, observe};
+pub use controller::Cede;
 pub use human::Human;
 pub use idm::Idm;
 pub use logistic::Logistic;
@@ -28,6 +27,7 @@ pub use policy_alone::PolicyAlone;
 pub use replay::Replay;
 pub use shielded::Shielded;
 
+use crate::meeting::Meeting;
 use cede_controller::Cause;
 use cede_controller::kinematics::State;
 use cede_data::encounter::{Encounter, Participant};
@@ -75,7 +75,7 @@ pub trait Driver {
     fn accelerate(&mut self, view: &View<'_>) -> f32;
 
     /// Who chose the acceleration of the step that was decided last: the driver itself, or a safety
-    /// shield in its stead, and why. The others are counted as in the driver's [`scene`].
+    /// shield in its stead, and why. Others are told by their numbers in [`View::states`].
     fn cause(&self) -> Cause {
         Cause::Policy
     }
@@ -86,6 +86,6 @@ pub trait DriverFactory: Sync {
     /// Name on the command line and in tables, as in `nearer-first`.
     fn name(&self) -> &str;
 
-    /// A driver for participant `ego` of `encounter`; every random choice it makes comes from `seed`.
-    fn driver(&self, encounter: &Encounter, ego: usize, seed: u64) -> Box<dyn Driver>;
+    /// A driver for participant `ego` of an encounter; every random choice it makes comes from `seed`.
+    fn driver<'m>(&self, meeting: &'m Meeting<'_>, ego: usize, seed: u64) -> Box<dyn Driver + 'm>;
 }

@@ -36,7 +36,7 @@ pub struct Action {
     /// The acceleration (m/s²) that it was given, within ±3.
     pub acceleration: f32,
     /// Who chose it: the driver ([`Cause::Policy`]), or a safety shield, and why. The only other that a
-    /// judged vehicle's shield knows, number 0, is the other judged one.
+    /// judged vehicle's shield knows is the other judged one, whose number is 0 or 1, as in [`Episode::states`].
     pub cause: Cause,
 }
 
@@ -58,7 +58,7 @@ impl Episode {
     #[must_use]
     pub fn run(
         encounter: &Encounter,
-        drivers: &mut [Box<dyn Driver>; 2],
+        drivers: &mut [Box<dyn Driver + '_>; 2],
         clearance: Option<[f32; 2]>,
     ) -> Self {
         let stepper = Stepper::new(encounter, clearance);
@@ -136,7 +136,7 @@ impl<'a> World<'a> {
         }
     }
 
-    fn decide(&self, step: u32, drivers: &mut [Box<dyn Driver>; 2]) -> [Action; 2] {
+    fn decide(&self, step: u32, drivers: &mut [Box<dyn Driver + '_>; 2]) -> [Action; 2] {
         [0, 1].map(|ego| {
             let view = View {
                 encounter: self.encounter,
@@ -158,6 +158,7 @@ mod tests {
     use crate::driver::{DriverFactory, InitialSpeed, Replay};
     use crate::evaluate::clearance;
     use crate::fixture::crossing;
+    use crate::meeting::Meeting;
 
     /// Always asks for the same acceleration.
     struct Constant(f32);
@@ -176,7 +177,8 @@ mod tests {
     fn the_first_arrival_ends_the_papers_episode_and_is_interpolated() {
         // 20 m at 8 m/s: 2.5 s; 30 m at 8 m/s: 3.75 s.
         let encounter = crossing([20.0, 8.0], [30.0, 8.0]);
-        let mut drivers = [0, 1].map(|i| InitialSpeed.driver(&encounter, i, 0));
+        let meeting = Meeting::new(&encounter).unwrap();
+        let mut drivers = [0, 1].map(|i| InitialSpeed.driver(&meeting, i, 0));
         let episode = Episode::run(&encounter, &mut drivers, None);
         assert_eq!(episode.end, End::Finished);
         assert_eq!(episode.first(), Some(Role::Left));
@@ -188,7 +190,8 @@ mod tests {
     #[test]
     fn replay_of_the_record_is_the_record() {
         let encounter = crossing([33.0, 7.0], [30.0, 9.0]);
-        let mut drivers = [0, 1].map(|i| Replay.driver(&encounter, i, 0));
+        let meeting = Meeting::new(&encounter).unwrap();
+        let mut drivers = [0, 1].map(|i| Replay.driver(&meeting, i, 0));
         let episode = Episode::run(&encounter, &mut drivers, None);
         assert_eq!(episode.steps(), encounter.steps);
         assert_eq!(episode.first(), Some(encounter.first));
@@ -208,7 +211,7 @@ mod tests {
         let encounter = crossing([20.0, 5.0], [20.0, 5.0]);
         let paper = Episode::run(&encounter, &mut constant(0.0, 0.0), None);
         assert_eq!(paper.end, End::Finished);
-        let exits = clearance(&encounter);
+        let exits = clearance(&Meeting::new(&encounter).unwrap());
         let on = Episode::run(&encounter, &mut constant(0.0, 0.0), Some(exits));
         assert_eq!(on.end, End::Collision);
         assert!(on.arrivals.iter().all(Option::is_some));
@@ -217,7 +220,7 @@ mod tests {
     #[test]
     fn both_leave_the_zone_in_a_cleared_episode() {
         let encounter = crossing([20.0, 8.0], [40.0, 8.0]);
-        let exits = clearance(&encounter);
+        let exits = clearance(&Meeting::new(&encounter).unwrap());
         // Half a length and half a width beyond the crossing at s = 100 m.
         for exit in exits {
             assert!((103.5..=104.5).contains(&exit), "{exit}");

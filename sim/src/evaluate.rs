@@ -13,6 +13,7 @@ pub use selection::{Round, Selection, UnknownSelection};
 
 use crate::driver::DriverFactory;
 use crate::episode::{Episode, Until};
+use crate::meeting::{Meeting, NoJunction};
 use crate::metrics::Measures;
 use cede_data::encounter::{Encounter, EncounterId, Role};
 use rayon::prelude::*;
@@ -50,6 +51,24 @@ pub struct Drive<'a> {
     pub measures: Measures,
 }
 
+/// An encounter that nobody drives, with a shield or without, because its routes are no junction.
+#[derive(Clone, Copy, Debug)]
+pub struct Refused<'a> {
+    /// The encounter.
+    pub encounter: &'a Encounter,
+    /// What is wrong with its routes.
+    pub why: NoJunction,
+}
+
+/// What came of [`evaluate`].
+#[derive(Default)]
+pub struct Evaluation<'a> {
+    /// The episodes.
+    pub drives: Vec<Drive<'a>>,
+    /// The encounters without one.
+    pub refused: Vec<Refused<'a>>,
+}
+
 /// Lets drivers of one kind drive all `encounters`; results come in the encounters' order.
 ///
 /// Runs on the threads of the current rayon pool, with the same bits on any number of them.
@@ -58,36 +77,46 @@ pub fn evaluate<'a>(
     factory: &dyn DriverFactory,
     encounters: &[&'a Encounter],
     protocol: Protocol<'_>,
-) -> Vec<Drive<'a>> {
+) -> Evaluation<'a> {
     let egos: &[Option<Role>] = match protocol.mode {
         Mode::Joint => &[None],
         Mode::Ego(_) => &[Some(Role::Left), Some(Role::Other)],
     };
-    encounters
-        .par_iter()
-        .flat_map_iter(|&encounter| {
-            let exits = (protocol.until == Until::Cleared).then(|| clearance(encounter));
-            egos.iter()
-                .map(move |&ego| drive(factory, encounter, ego, exits, protocol))
-        })
-        .collect()
+    let drive_all = |&encounter: &&'a Encounter| {
+        let meeting = Meeting::new(encounter).map_err(|why| Refused { encounter, why })?;
+        let exits = (protocol.until == Until::Cleared).then(|| clearance(&meeting));
+        let drives = egos
+            .iter()
+            .map(|&ego| drive(factory, &meeting, ego, exits, protocol));
+        Ok(drives.collect::<Vec<_>>())
+    };
+    let results: Vec<Result<_, _>> = encounters.par_iter().map(drive_all).collect();
+    let mut evaluation = Evaluation::default();
+    for result in results {
+        match result {
+            Ok(drives) => evaluation.drives.extend(drives),
+            Err(refused) => evaluation.refused.push(refused),
+        }
+    }
+    evaluation
 }
 
 /// Drives one episode; `exits` as [`Episode::run`]'s clearance.
 fn drive<'a>(
     factory: &dyn DriverFactory,
-    encounter: &'a Encounter,
+    meeting: &Meeting<'a>,
     ego: Option<Role>,
     exits: Option<[f32; 2]>,
     protocol: Protocol<'_>,
 ) -> Drive<'a> {
+    let encounter = meeting.encounter;
     let mut drivers = Role::BOTH.map(|role| {
         let factory = match protocol.mode {
             Mode::Ego(partner) if ego != Some(role) => partner,
             _ => factory,
         };
         let index = role as usize;
-        factory.driver(encounter, index, seed(protocol.seed, &encounter.id, index))
+        factory.driver(meeting, index, seed(protocol.seed, &encounter.id, index))
     });
     let episode = Episode::run(encounter, &mut drivers, exits);
     let tested = ego.as_ref().map_or(&Role::BOTH[..], std::slice::from_ref);
@@ -146,7 +175,7 @@ mod tests {
                 until: Until::Cleared,
                 seed: 1,
             };
-            let drives = evaluate(&*factory, &references, protocol);
+            let drives = evaluate(&*factory, &references, protocol).drives;
             TableRow::of(label(baseline.name()), &drives)
         };
         pool.unwrap().install(|| Baseline::ALL.map(row).to_vec())

@@ -9,6 +9,7 @@ pub mod evaluate;
 #[cfg(test)]
 mod fixture;
 pub mod judge;
+pub mod meeting;
 pub mod metrics;
 pub mod observation_model;
 pub mod reward;
@@ -18,4 +19,5 @@ pub mod transparency;
 
 pub use driver::{Driver, DriverFactory, View};
 pub use judge::Judge;
+pub use meeting::{Meeting, NoJunction};
 pub use observation_model::{Bystanders, ObservationModel};

@@ -104,9 +104,10 @@ mod tests {
     use super::*;
     use crate::driver::{Driver, DriverFactory, InitialSpeed, Replay, View};
     use crate::fixture::crossing;
+    use crate::meeting::Meeting;
     use cede_controller::{Cause, Fault};
 
-    fn drive(encounter: &Encounter, mut drivers: [Box<dyn Driver>; 2]) -> Measures {
+    fn drive(encounter: &Encounter, mut drivers: [Box<dyn Driver + '_>; 2]) -> Measures {
         let episode = Episode::run(encounter, &mut drivers, None);
         Measures::of(encounter, &episode, &Role::BOTH)
     }
@@ -124,14 +125,15 @@ mod tests {
         }
 
         fn cause(&self) -> Cause {
-            Cause::Fallback(Fault::Unverified)
+            Cause::Fallback(Fault::NoPlan)
         }
     }
 
     #[test]
     fn the_record_itself_has_no_error() {
         let encounter = crossing([33.0, 7.0], [50.0, 9.0]);
-        let drivers = [0, 1].map(|i| Replay.driver(&encounter, i, 0));
+        let meeting = Meeting::new(&encounter).unwrap();
+        let drivers = [0, 1].map(|i| Replay.driver(&meeting, i, 0));
         let measures = drive(&encounter, drivers);
         assert!(measures.correct);
         assert_eq!(measures.length_error, 0.0);
@@ -146,7 +148,8 @@ mod tests {
         // Recorded: 40 steps for the left-turner. Driven: from the 10 m/s of a faster record.
         let mut encounter = crossing([20.0, 5.0], [60.0, 5.0]);
         encounter.participants[0].record[0].v = 10.0;
-        let drivers = [0, 1].map(|i| InitialSpeed.driver(&encounter, i, 0));
+        let meeting = Meeting::new(&encounter).unwrap();
+        let drivers = [0, 1].map(|i| InitialSpeed.driver(&meeting, i, 0));
         let measures = drive(&encounter, drivers);
         assert_eq!((measures.length, encounter.steps), (20, 40));
         assert_eq!(measures.length_error, 0.5);
@@ -161,8 +164,9 @@ mod tests {
     #[test]
     fn jerk_and_shield_are_those_of_the_vehicle_under_test() {
         let encounter = crossing([20.0, 8.0], [40.0, 8.0]);
+        let meeting = Meeting::new(&encounter).unwrap();
         let mut drivers: [Box<dyn Driver>; 2] =
-            [Box::new(Saw), InitialSpeed.driver(&encounter, 1, 0)];
+            [Box::new(Saw), InitialSpeed.driver(&meeting, 1, 0)];
         let episode = Episode::run(&encounter, &mut drivers, None);
         let of = |tested: &[Role]| Measures::of(&encounter, &episode, tested);
         assert!((of(&[Role::Left]).jerk.unwrap() - 20.0).abs() < 1e-4);
@@ -182,9 +186,10 @@ mod tests {
     }
 
     fn drive_constant(encounter: &Encounter) -> Measures {
+        let meeting = Meeting::new(encounter).unwrap();
         drive(
             encounter,
-            [0, 1].map(|i| InitialSpeed.driver(encounter, i, 0)),
+            [0, 1].map(|i| InitialSpeed.driver(&meeting, i, 0)),
         )
     }
 }

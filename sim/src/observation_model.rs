@@ -1,26 +1,12 @@
 //! What the two judged vehicles of an encounter see, while its bystanders do what they did.
 
+use crate::meeting::{conflict, crossroads, recorded};
 use cede_controller::RouteConflict;
 use cede_controller::kinematics::State;
-use cede_controller::{
-    ConflictKind, Footprint, NearbyVehicle, Pair, Path, Scene, TrafficContext, UnitVector,
-};
+use cede_controller::{ConflictKind, Footprint, NearbyVehicle, Pair, TrafficContext, UnitVector};
 use cede_controller::{Part, RightOfWay, VehicleState};
 use cede_data::encounter::Encounter;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4};
-
-/// The scene of judged vehicle `ego` with the one that it meets; `None` if there is none.
-#[must_use]
-pub fn scene(encounter: &Encounter, ego: usize) -> Option<Scene<1>> {
-    let path = |index: usize| {
-        let participant = encounter.participants.get(index)?;
-        Some(Path {
-            route: &participant.route,
-            footprint: Footprint::PAPER,
-        })
-    };
-    Scene::new(path(ego)?, &[path(1_usize.checked_sub(ego)?)?]).ok()
-}
 
 /// The bystanders of an encounter whose routes meet that of one of its judged vehicles.
 #[derive(Clone, Debug)]
@@ -30,24 +16,21 @@ pub struct Bystanders {
 }
 
 impl Bystanders {
-    /// The bystanders whose routes meet that of judged vehicle `ego`.
+    /// The bystanders whose routes meet that of judged vehicle `ego`; one whose route is no path of a junction is left out.
     ///
     /// Cost: about 0.1 ms a bystander.
     #[must_use]
     pub fn new(encounter: &Encounter, ego: usize) -> Self {
-        let path = |index: usize| encounter.participants.get(index);
         let conflict = |index: usize| {
-            let (own, other) = (path(ego)?, path(index)?);
-            let own = Path {
-                route: &own.route,
-                footprint: Footprint::PAPER,
-            };
-            let other = Path {
-                route: &other.route,
-                footprint: other.footprint,
-            };
-            let scene = Scene::<1>::new(own, &[other]).ok()?;
-            let conflict = scene.conflicts().first().copied()?;
+            let (own, other) = (
+                encounter.participants.get(ego)?,
+                encounter.participants.get(index)?,
+            );
+            let routes = [
+                (&own.route, Footprint::PAPER),
+                (&other.route, other.footprint),
+            ];
+            let conflict = conflict(&crossroads(routes).ok()?, 0).copied()?;
             conflict.zones().next()?;
             Some((conflict, index))
         };
@@ -94,7 +77,8 @@ impl<'e> ObservationModel<'e> {
     #[must_use]
     pub fn new(encounter: &'e Encounter) -> Self {
         let participants = &encounter.participants;
-        let rival = scene(encounter, 0).and_then(|s| s.conflicts().first().copied());
+        let junction = recorded(encounter).ok();
+        let rival = junction.as_ref().and_then(|junction| conflict(junction, 0));
         let rival = rival.filter(|conflict| conflict.zones().next().is_some());
         let recorded = [0, 1].map(|i| participants[i].conflict_s);
         Self {

@@ -1,8 +1,8 @@
 //! How much of what good drivers do the shield would allow.
 
-use cede_controller::{
-    ConflictKind, Contract, ContractError, Footprint, Observation, Path, Scene, Shield, Vehicle,
-};
+use crate::meeting::{path, recorded, sensed};
+use cede_controller::kinematics::State;
+use cede_controller::{ConflictKind, Contract, ContractError, Observation, Shield, Track};
 use cede_data::encounter::{Encounter, Participant, Role, Sample};
 use rayon::prelude::*;
 
@@ -86,13 +86,9 @@ pub fn sweep(encounters: &[&Encounter], contract: Contract) -> Result<Vec<Swept>
 
 /// A table for each of `contracts`, without rows for what does not occur.
 fn tables(encounters: &[&Encounter], contracts: &[Contract]) -> Vec<Vec<Transparency>> {
-    let shields: Vec<Shield<1>> = contracts
-        .iter()
-        .map(|&contract| Shield::new(contract))
-        .collect();
     let counted: Vec<Vec<Transparency>> = encounters
         .par_iter()
-        .flat_map_iter(|encounter| Role::BOTH.map(|role| count(&shields, encounter, role)))
+        .flat_map_iter(|encounter| Role::BOTH.map(|role| count(contracts, encounter, role)))
         .collect();
     (0..contracts.len())
         .map(|i| table(&counted.iter().filter_map(|counts| counts.get(i))))
@@ -120,44 +116,38 @@ fn table<'c>(counted: &(impl Iterator<Item = &'c Transparency> + Clone)) -> Vec<
     groups.map(total).filter(|t| t.steps > 0).collect()
 }
 
-/// What each of `shields` accepts of one recorded drive.
-fn count(shields: &[Shield<1>], encounter: &Encounter, role: Role) -> Vec<Transparency> {
-    let mut counts = vec![Transparency::none(role, encounter.kind); shields.len()];
+/// What shields under each of `contracts` accept of one recorded drive: nothing, if the routes are no junction.
+fn count(contracts: &[Contract], encounter: &Encounter, role: Role) -> Vec<Transparency> {
+    let mut counts = vec![Transparency::none(role, encounter.kind); contracts.len()];
     let (mine, theirs) = (role as usize, 1 - role as usize);
-    let (Some(ego), Some(other)) = (
-        encounter.participants.get(mine),
-        encounter.participants.get(theirs),
-    ) else {
-        return counts;
+    let junction = recorded(encounter).ok();
+    let enter = |&contract| Shield::<1>::enter(contract, junction.as_ref()?, path(mine)).ok();
+    let shields: Vec<_> = contracts.iter().map(enter).collect();
+    let vehicle = |participant: &Participant, sample: &Sample| {
+        let state = State {
+            s: sample.s,
+            v: sample.v,
+        };
+        sensed(&participant.route, state)
     };
-    // One other with the paper's footprint: there is a scene.
-    let Ok(scene) = Scene::<1>::new(path(ego), &[path(other)]) else {
-        return counts;
-    };
-    let vehicle = |participant: &Participant, sample: &Sample| Vehicle {
-        s: sample.s,
-        speed: sample.v,
-        pose: participant.route.pose(sample.s),
-    };
+    let (ego, other) = (
+        &encounter.participants[mine],
+        &encounter.participants[theirs],
+    );
     let mut previous = None;
     for (a, b) in ego.record.iter().zip(&other.record) {
         let observation = Observation {
             ego: vehicle(ego, a),
-            others: [Some(vehicle(other, b))],
+            tracks: &[Track::on(theirs as u16, path(theirs), vehicle(other, b))],
         };
         for (shield, count) in shields.iter().zip(&mut counts) {
-            let margin = shield.margin(&scene, &observation, previous.unwrap_or(a.a), a.a);
+            let margin = shield
+                .as_ref()
+                .map(|shield| shield.margin(&observation, previous.unwrap_or(a.a), a.a));
             count.steps += 1;
-            count.accepted += u64::from(margin.is_ok_and(|margin| margin >= 0.0));
+            count.accepted += u64::from(matches!(margin, Some(Ok(margin)) if margin >= 0.0));
         }
         previous = Some(a.a);
     }
     counts
-}
-
-fn path(participant: &Participant) -> Path<'_, 128> {
-    Path {
-        route: &participant.route,
-        footprint: Footprint::PAPER,
-    }
 }

@@ -1,9 +1,10 @@
 //! A shielded vehicle among replayed humans gets through, and soon after they have.
 
 use cede_controller::kinematics::{State, advance};
-use cede_controller::{Cause, Contract, Fault, Observation, Shield, Vehicle};
+use cede_controller::{Cause, Contract, Fault, Observation, RouteConflict, Shield, Track};
 use cede_data::{Dataset, Encounter};
-use cede_sim::driver::scene;
+use cede_sim::Meeting;
+use cede_sim::meeting::{instant, path, sensed};
 use rayon::prelude::*;
 
 /// Where the ego would like to be in terms of speed, in m/s.
@@ -16,35 +17,34 @@ fn delay(encounter: &Encounter, ego: usize) -> Option<u32> {
         &encounter.participants[ego],
         &encounter.participants[1 - ego],
     );
-    let scene = scene(encounter, ego)?;
-    let zones: Vec<_> = scene.conflicts()[0].zones().copied().collect();
-    let mut shield = Shield::<1>::new(Contract::WORST_CASE);
+    let meeting = Meeting::new(encounter).unwrap();
+    let conflict = meeting.conflict(ego).into_iter();
+    let zones: Vec<_> = conflict.flat_map(RouteConflict::zones).collect();
+    let mut shield =
+        Shield::<1>::enter(Contract::WORST_CASE, &meeting.junction, path(ego)).unwrap();
     let mut state = me.record.first().map(|r| State { s: r.s, v: r.v })?;
-    let mut free = 0;
+    let (rival, mut free) = (1, 0);
     for step in 0..10_000 {
-        let vehicle = |s: f32, speed: f32, route: &cede_data::SimRoute| Vehicle {
-            s,
-            speed,
-            pose: route.pose(s),
-        };
-        let other = them
-            .record
-            .get(step)
-            .map(|r| vehicle(r.s, r.v, &them.route));
+        let other = them.recorded(step).map(|r| State { s: r.s, v: r.v });
+        let track = other.map(|o| Track::on(rival, path(1 - ego), sensed(&them.route, o)));
+        if track.is_none() {
+            // Its record has ended: it is gone.
+            shield.forget(rival);
+        }
         let seen = Observation {
-            ego: vehicle(state.s, state.v, &me.route),
-            others: [other],
+            ego: sensed(&me.route, state),
+            tracks: track.as_slice(),
         };
         // Into a lane the ego need only enter: it may have to follow the other for ever.
         let passed =
-            |z: &cede_controller::Zone| state.s >= if z.is_lane() { z.ego.from } else { z.ego.to };
+            |z: &&cede_controller::Zone| state.s >= if z.is_lane() { z.ego.from } else { z.ego.to };
         if zones.iter().all(passed) {
             return Some(free);
         }
-        let gone = |z: &cede_controller::Zone| other.is_none_or(|o| o.s >= z.other.to);
+        let gone = |z: &&cede_controller::Zone| other.is_none_or(|o| o.s >= z.other.to);
         free += u32::from(zones.iter().all(gone));
-        let decision = shield.filter(&scene, &seen, (CRUISE - state.v).clamp(-3.0, 3.0));
-        if step == 0 && decision.cause == Cause::Fallback(Fault::Unverified) {
+        let decision = shield.filter(instant(step), &seen, (CRUISE - state.v).clamp(-3.0, 3.0));
+        if step == 0 && decision.cause == Cause::Fallback(Fault::NoPlan) {
             return None;
         }
         state = advance(state, decision.acceleration);

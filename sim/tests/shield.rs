@@ -4,7 +4,7 @@
 use cede_controller::dangerous::{Rules, Sound, unchecked};
 use cede_controller::shield::margin::{self, Departure};
 use cede_controller::shield::reach::Reach;
-use cede_controller::{Contract, Plan, Zone};
+use cede_controller::{Bounds, Contract, Plan, Zone};
 use cede_sim::campaign::{Setup, Tally, campaign, unshielded};
 
 /// One careless shielded vehicle among three adversaries, with exact sensors.
@@ -181,6 +181,16 @@ mutant! { a_leader_that_is_trusted_to_brake_gently_is_caught, GentleLeader,
 mutant! { a_plan_that_forgets_to_stop_after_the_zone_is_caught, RestsWhereItClears,
     fn rest(_: &Contract, from: Reach<f32>, _: f32) -> f32 {
         from.distance
+    }
+}
+mutant! { a_missing_vehicle_that_is_taken_to_stand_still_is_caught, StandsStill,
+    fn coast(contract: &Contract, s: f32, speed: f32, _: f32) -> Bounds {
+        Bounds::after(contract, s, speed, 0.0)
+    }
+}
+mutant! { an_ego_that_is_always_taken_for_the_one_ahead_is_caught, AlwaysAhead,
+    fn is_ahead(_: &Zone, _: f32) -> bool {
+        true
     }
 }
 

@@ -6,8 +6,9 @@
 //! the ego's.
 
 use cede_controller::junction::zone::FAR;
-use cede_controller::{Footprint, Path, Point, Route, Scene, Span, Vector, Zone};
+use cede_controller::{Footprint, Point, Route, RouteConflict, Span, Vector, Zone};
 use cede_data::{Dataset, SimRoute};
+use cede_sim::meeting::{conflict, crossroads};
 use geo::{ConvexHull, Coord, Intersects, MultiPoint, Polygon};
 use proptest::prelude::*;
 use rayon::prelude::*;
@@ -77,14 +78,16 @@ fn excess(intervals: &[Span], occupied: &[f32], length: f32, step: f32) -> f32 {
     worst
 }
 
+/// The zones of the first route with the second.
+fn zones<const P: usize>(routes: [(&Route<P>, Footprint); 2]) -> Vec<Zone> {
+    let junction = crossroads(routes).unwrap();
+    let conflict = conflict(&junction, 0).into_iter();
+    conflict.flat_map(RouteConflict::zones).copied().collect()
+}
+
 /// The longest needless stretch of the zones of two routes, in metres; fails where a zone is too small.
 fn check<const P: usize>(ego: &Route<P>, other: &Route<P>, step: f32) -> f32 {
-    let path = |route| Path {
-        route,
-        footprint: PAPER,
-    };
-    let scene = Scene::<1>::new(path(ego), &[path(other)]).unwrap();
-    let zones: Vec<Zone> = scene.conflicts()[0].zones().copied().collect();
+    let zones = zones([(ego, PAPER), (other, PAPER)]);
     let mut worst = 0.0_f32;
     for (route, against, mine) in [(ego, other, true), (other, ego, false)] {
         let side = |z: &Zone| if mine { z.ego } else { z.other };
@@ -165,13 +168,12 @@ proptest! {
     fn the_lead_holds_every_overlap(
         ego in any_route(), other in any_route(), s in 0.0_f32..1.0, t in 0.0_f32..1.0,
     ) {
-        let path = |route| Path { route, footprint: PAPER };
-        let scene = Scene::<1>::new(path(&ego), &[path(&other)]).unwrap();
+        let zones = zones([(&ego, PAPER), (&other, PAPER)]);
         let (s, t) = (s * ego.length(), t * other.length());
         let cover = |pose: cede_controller::Pose| hull(corners(pose.position, pose.direction.into_inner()));
         if cover(ego.pose(s)).intersects(&cover(other.pose(t))) {
             let inside = |z: &Zone| z.ego.contains(s) && z.other.contains(t) && z.lead.contains(s - t);
-            prop_assert!(scene.conflicts()[0].zones().any(inside));
+            prop_assert!(zones.iter().any(inside));
         }
     }
 }
@@ -182,22 +184,11 @@ fn a_zone_that_is_too_small_is_noticed() {
         curve(0.0, 0.0, 0.0, 0.02, 0.0),
         curve(0.0, 0.0, 1.5, 0.0, 0.0),
     );
-    let small = Path {
-        route: &ego,
-        footprint: Footprint {
-            length: 4.9,
-            width: 1.9,
-        },
+    let small = Footprint {
+        length: 4.9,
+        width: 1.9,
     };
-    let scene = Scene::<1>::new(
-        small,
-        &[Path {
-            route: &other,
-            footprint: PAPER,
-        }],
-    )
-    .unwrap();
-    let zone = scene.conflicts()[0].zones().next().unwrap().ego;
+    let zone = zones([(&ego, small), (&other, PAPER)])[0].ego;
     let occupied = occupied(&ego, &sweep(&other), 0.01);
     assert!(occupied.iter().any(|&s| !zone.contains(s)));
 }

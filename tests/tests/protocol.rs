@@ -16,7 +16,7 @@ fn row(dataset: &Dataset, baseline: Baseline, selection: Selection) -> TableRow 
     let mut drives = Vec::new();
     for round in selection.rounds(dataset) {
         let factory = baseline.fit(&round.training).unwrap();
-        drives.extend(evaluate(&*factory, &round.judged, protocol));
+        drives.extend(evaluate(&*factory, &round.judged, protocol).drives);
     }
     let label = Label {
         driver: baseline.name(),

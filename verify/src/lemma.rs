@@ -6,10 +6,12 @@
 //! Every lemma is also asked with a broken rule, and must then fail.
 
 mod apart;
+mod coast;
 mod contract;
 mod departure;
 mod entry;
 mod formula;
+mod limit;
 mod motion;
 mod reach;
 mod symbol;
@@ -156,6 +158,9 @@ pub fn lemmas() -> Vec<Lemma> {
         tail::lemmas(),
         apart::lemmas(),
         entry::lemmas(),
+        limit::lemmas(),
+        coast::lemmas(),
+        limit::unlimited_lemmas(),
     ];
     groups.into_iter().flatten().collect()
 }

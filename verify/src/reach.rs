@@ -6,7 +6,7 @@
 //! allows it. Where a tube is too wide to show the claim, the box of initial states is cut.
 //!
 //! The two routes cross at a right angle, straight on, as [`geometry`] builds them. **What a proof is about**:
-//! the `Controller` with its worst-case contract and exact sensors, a command that is in effect
+//! an `Approach` with its worst-case contract and exact sensors, a command that is in effect
 //! for the whole period, and the simulator's exact kinematics; `f32` rounding is allowed for.
 
 mod scenario;
@@ -17,7 +17,7 @@ mod step;
 #[cfg(test)]
 mod tests;
 
-pub use scenario::{Claim, Scenario, ScenarioError, Scenarios, geometry};
+pub use scenario::{Claim, Crossing, EGO, OTHER, Scenario, ScenarioError, Scenarios, geometry};
 pub use search::{Finding, Settled, settle};
 pub use states::Moment;
 pub use step::{Loop, Tube};

@@ -5,11 +5,12 @@ mod numbers;
 use crate::drivers::{Contender, Drivers};
 use crate::failure::Failure;
 use crate::judge::{ContractName, ShieldName};
+use crate::left_out;
 use crate::report::{Report, command};
 use cede_controller::Contract;
 use cede_data::{Dataset, Encounter};
 use cede_sim::episode::Until;
-use cede_sim::evaluate::{Label, Mode, Protocol, TableRow, evaluate};
+use cede_sim::evaluate::{Evaluation, Label, Mode, Protocol, TableRow, evaluate};
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -97,7 +98,11 @@ fn drive(
         until: Until::Cleared,
         seed: 0,
     };
-    let drives = evaluate(&*factory, &[encounter], protocol);
+    let Evaluation { drives, refused } = evaluate(&*factory, &[encounter], protocol);
+    if let Some(refused) = refused.first() {
+        let words = left_out::words(refused);
+        return Err(Failure::input(words, "name another encounter with --pair"));
+    }
     let label = Label {
         driver: contender.name(),
         split: "all",

@@ -74,7 +74,7 @@ impl RouteConflict {
         let zones = zones(ego, other);
         let first = first(&zones);
         let (ego_conflict, other_conflict) =
-            meeting::conflict_points(ego.polyline, other.polyline, first);
+            meeting::conflict_points(ego.polyline, other.polyline, &zones, first);
         Self {
             kind: kind(first),
             ego_conflict,

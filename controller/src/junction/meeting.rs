@@ -1,21 +1,22 @@
 //! The conflict point of two routes, which the policy counts distances to.
 
 use crate::geometry::Point;
-use crate::junction::polyline::Polyline;
-use crate::junction::zone::Zone;
+use crate::junction::polyline::{Piece, Polyline};
+use crate::junction::zone::{Span, Zone, Zones};
 
 /// A vehicle has reached the conflict point when it is nearer to it than this (m): the paper's rule.
 pub const CONFLICT_RADIUS: f32 = 5.0;
 
 /// Where on its own route (arc length, m) each of the two has reached the conflict point.
 ///
-/// `first` is the zone that the ego reaches first.
+/// `first` is the one of their `zones` that the ego reaches first.
 pub(super) fn conflict_points(
     ego: Polyline<'_>,
     other: Polyline<'_>,
+    zones: &Zones,
     first: Option<&Zone>,
 ) -> (f32, f32) {
-    match (crossing(ego, other), first) {
+    match (crossing(ego, other, zones), first) {
         (Some(point), _) => (reach(ego, point), reach(other, point)),
         (None, Some(zone)) => (
             within(zone.ego.from, ego.length()),
@@ -36,23 +37,26 @@ pub(super) fn within(value: f32, length: f32) -> f32 {
     }
 }
 
-/// The first proper crossing of two polylines along the first of them.
-fn crossing(a: Polyline<'_>, b: Polyline<'_>) -> Option<Point> {
-    for i in 0..a.pieces() {
-        let mut nearest: Option<f32> = None;
-        let (&p, &q) = (a.points().get(i)?, a.points().get(i + 1)?);
-        for (&r, &s) in b.points().iter().zip(b.points().iter().skip(1)) {
-            if let Some(along) = cross(p, q, r, s)
-                && nearest.is_none_or(|nearest| along < nearest)
-            {
-                nearest = Some(along);
-            }
-        }
-        if let Some(along) = nearest {
-            return Some(p + (q - p) * along);
+/// The first proper crossing of two polylines along the first of them. It is in one of their zones.
+fn crossing(a: Polyline<'_>, b: Polyline<'_>, zones: &Zones) -> Option<Point> {
+    let within = |piece: &Piece, side: fn(&Zone) -> Span| {
+        let mut spans = zones.iter().flatten().map(side);
+        spans.any(|span| piece.from <= span.to && span.from <= piece.to)
+    };
+    for p in pieces(a).filter(|p| within(p, |zone| zone.ego)) {
+        let others = pieces(b).filter(|q| within(q, |zone| zone.other));
+        let alongs = others.filter_map(|q| cross(p.start, p.end, q.start, q.end));
+        if let Some(along) =
+            alongs.reduce(|nearest, along| if along < nearest { along } else { nearest })
+        {
+            return Some(p.start + (p.end - p.start) * along);
         }
     }
     None
+}
+
+fn pieces(route: Polyline<'_>) -> impl Iterator<Item = Piece> {
+    (0..route.pieces()).filter_map(move |i| route.piece(i))
 }
 
 /// Where the open segment from `p` to `q` crosses that from `r` to `s`, as a fraction of `p` to `q`.
@@ -67,7 +71,7 @@ fn cross(p: Point, q: Point, r: Point, s: Point) -> Option<f32> {
 
 /// Arc length of the first point of `route` within [`CONFLICT_RADIUS`] of `point`; its end if there is none.
 fn reach(route: Polyline<'_>, point: Point) -> f32 {
-    for piece in (0..route.pieces()).filter_map(|i| route.piece(i)) {
+    for piece in pieces(route) {
         let direction = piece.velocity();
         // |start + direction·x − point| = radius, solved for the smaller x.
         let offset = piece.start - point;

@@ -8,6 +8,8 @@ mod path;
 mod polyline;
 mod prepared;
 pub(crate) mod route;
+#[cfg(test)]
+mod tests;
 mod way;
 pub mod zone;
 

@@ -102,3 +102,11 @@ impl<const R: usize, const P: usize, const E: usize> Junction<R, P, E> {
         self.tolerance
     }
 }
+
+#[cfg(test)]
+impl<const R: usize, const P: usize, const E: usize> Junction<R, P, E> {
+    /// How the first path meets each.
+    pub(crate) fn conflicts_mut(&mut self) -> &mut [RouteConflict] {
+        self.conflicts.first_mut().map_or(&mut [], |row| row)
+    }
+}

@@ -87,8 +87,7 @@ impl NearbyVehicle<'_> {
 mod tests {
     use super::*;
     use crate::geometry::{Footprint, Point};
-    use crate::junction::route::Route;
-    use crate::junction::scene::{Path, Scene};
+    use crate::junction::{Class, Junction, Route};
 
     fn route(points: [(f32, f32); 2]) -> Route<4> {
         Route::new(points.map(|(x, y)| Point::new(x, y))).unwrap()
@@ -99,15 +98,11 @@ mod tests {
         let east = route([(-30.0, 0.0), (30.0, 0.0)]);
         let behind_it = route([(-30.0, 0.0), (30.0, 0.01)]);
         let north = route([(0.0, -40.0), (0.0, 40.0)]);
-        let path = |route| Path {
-            route,
-            footprint: Footprint::PAPER,
-        };
-        let others = [path(&behind_it), path(&north)];
-        let scene = Scene::<2>::new(path(&east), &others).unwrap();
-        let [lane, crossing] = scene.conflicts() else {
-            panic!("two conflicts")
-        };
+        let mut builder = Junction::<3, 6, 1>::builder();
+        let [own, lane, crossing] = [&east, &behind_it, &north]
+            .map(|route| builder.path(route, Class::Car, Footprint::PAPER).unwrap());
+        let junction = builder.tolerance(0.0).clone().build().unwrap();
+        let [lane, crossing] = [lane, crossing].map(|path| junction.conflict(own, path).unwrap());
         let at = |conflict, s, speed| NearbyVehicle { conflict, s, speed };
         let seen = TrafficContext::new(
             10.0,

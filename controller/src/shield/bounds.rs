@@ -2,7 +2,6 @@
 
 use super::contract::Contract;
 use super::margin;
-use super::reach::Reach;
 use crate::junction::zone::Span;
 
 /// Bounds on another vehicle's arc length (m) and speed (m/s).
@@ -21,7 +20,7 @@ impl Bounds {
     #[must_use]
     pub fn after(contract: &Contract, s: f32, speed: f32, time: f32) -> Self {
         let (place, error) = (contract.position_error, contract.speed_error);
-        let slowest = Reach::start(speed - error).at_least(-contract.other.braking, 0.0, time);
+        let slowest = margin::dawdle(contract, speed - error, time);
         let fastest = margin::rush(contract, speed + error, time);
         Self {
             s: Span {

@@ -15,30 +15,15 @@ pub fn grid<R: Real>(ego: &Ego, i: u8) -> R {
 
 /// The hardest acceleration (m/s²) that may be commanded at `speed` (m/s, as sensed) while one of at most `in_effect`
 /// (m/s²) still acts: the ego does not become faster than `ego.max_speed`, and if it is already, no faster than it is.
-#[must_use]
-pub fn most(contract: &Contract, speed: f32, in_effect: f32) -> f32 {
+pub fn most<R: Real>(contract: &Contract, speed: R, in_effect: R) -> R {
     let ego = contract.ego();
-    let (period, late) = (contract.period(), contract.switching());
-    let room = ego.max_speed - speed - contract.speed_error();
-    let carried = if in_effect > 0.0 {
-        in_effect * late
-    } else {
-        0.0
-    };
-    let [after, throughout] = [(room - carried) / period, room / (period + late)];
-    let most = if after < throughout {
-        after
-    } else {
-        throughout
-    };
+    let (period, late) = (R::of(contract.period()), R::of(contract.switching()));
+    let zero = R::of(0.0);
+    let room = R::of(ego.max_speed) - speed - R::of(contract.speed_error());
+    let after = (room - zero.max(in_effect) * late) / period;
+    let throughout = room / (period + late);
     // In this order, what is not a number becomes 0.
-    if most >= ego.acceleration {
-        ego.acceleration
-    } else if most > 0.0 {
-        most
-    } else {
-        0.0
-    }
+    zero.max(after.min(throughout)).min(R::of(ego.acceleration))
 }
 
 /// What may be commanded of `acceleration` (m/s²) if `most` (m/s²) is the hardest; braking, if it is not a number.

@@ -100,7 +100,7 @@ mod tests {
 
     #[test]
     fn jitter_is_on_time() {
-        let contract = Contract::builder().latency(0.05).jitter(0.01).build();
+        let contract = Contract::builder().latency(0.03).jitter(0.01).build();
         let contract = contract.unwrap();
         let mut clock = Clock::default();
         for (millis, on_time) in [(0, true), (110, true), (190, true), (311, false)] {

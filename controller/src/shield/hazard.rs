@@ -2,13 +2,13 @@
 
 use super::contract::Contract;
 use super::margin;
+use super::own::Own;
 use super::precedence::has;
 use super::reach::Reach;
 use super::rules::Rules;
 use super::tracks::{Closed, News, Other, Tracks};
 use crate::junction::zone::{FAR, MAX_ZONES, Zone};
 use crate::junction::{MAX_OTHERS, RightOfWay, Way};
-use crate::observation::Vehicle;
 use crate::real::Real;
 use heapless::Vec;
 
@@ -81,7 +81,7 @@ impl Hazards {
         &mut self,
         contract: &Contract,
         way: Way<'_>,
-        (ego, tracks): (&Vehicle, &Tracks<N>),
+        (ego, tracks): (&Own, &Tracks<N>),
         closed: Option<Closed>,
     ) {
         // From where the first zone that precedence opens begins to where the last one ends.
@@ -163,7 +163,7 @@ impl Hazards {
 
 impl Hazard {
     /// Zones that nobody watches.
-    fn closed(contract: &Contract, ego: &Vehicle, closed: Closed) -> Self {
+    fn closed(contract: &Contract, ego: &Own, closed: Closed) -> Self {
         Self {
             other: closed.number,
             place: u8::MAX,
@@ -182,12 +182,12 @@ impl Hazard {
 fn hazard<R: Rules>(
     contract: &Contract,
     (index, zone): (u8, &Zone),
-    ego: &Vehicle,
+    ego: &Own,
     other: &Other,
 ) -> Option<Hazard> {
     let error = contract.position_error;
     let bounds = other.bounds;
-    if ego.s - error >= zone.ego.to || R::left(zone, bounds.s.from) {
+    if ego.least >= zone.ego.to || R::left(zone, bounds.s.from) {
         return None;
     }
     let stop = zone.ego.from - ego.s - error;
@@ -215,48 +215,40 @@ fn hazard<R: Rules>(
         return None;
     }
     let behind = behind::<R>(contract, zone, ego, other);
-    Some(
-        if !is_ahead::<R>(contract, zone, ego, other) && behind > stop {
-            Hazard {
-                target: FAR,
-                limit: behind,
-                passage: Passage::Never,
-                ..crossing
-            }
-        } else {
-            Hazard {
-                target: zone.ego.from - ego.s + 3.0 * error,
-                passage: Passage::Ahead {
-                    gap: gap_ahead(contract, zone, ego, other),
-                    speed,
-                },
-                ..crossing
-            }
-        },
-    )
+    Some(if !is_ahead::<R>(zone, ego, other) && behind > stop {
+        Hazard {
+            target: FAR,
+            limit: behind,
+            passage: Passage::Never,
+            ..crossing
+        }
+    } else {
+        Hazard {
+            target: zone.ego.from - ego.s + 3.0 * error,
+            passage: Passage::Ahead {
+                gap: gap_ahead(zone, ego, other),
+                speed,
+            },
+            ..crossing
+        }
+    })
 }
 
 /// Whether the ego is certainly in the lane, and ahead of the other in it.
 ///
 /// Two vehicles in a lane do not overlap: one that is not behind by the whole band is ahead.
-pub(super) fn is_ahead<R: Rules>(
-    contract: &Contract,
-    zone: &Zone,
-    ego: &Vehicle,
-    other: &Other,
-) -> bool {
-    let least = ego.s - contract.position_error;
-    least >= zone.ego.from && R::is_ahead(zone, least - other.bounds.s.to)
+pub(super) fn is_ahead<R: Rules>(zone: &Zone, ego: &Own, other: &Other) -> bool {
+    ego.least >= zone.ego.from && R::is_ahead(zone, ego.least - other.bounds.s.to)
 }
 
 /// The gap (m), at least, from the other to the ego ahead of it once that has entered the lane.
-pub(super) fn gap_ahead(contract: &Contract, zone: &Zone, ego: &Vehicle, other: &Other) -> f32 {
-    let place = Real::max(zone.ego.from, ego.s - contract.position_error);
+pub(super) fn gap_ahead(zone: &Zone, ego: &Own, other: &Other) -> f32 {
+    let place = Real::max(zone.ego.from, ego.least);
     place - other.bounds.s.to - zone.lead.to
 }
 
 /// How far (m) the ego may go and still be at rest behind an other that is ahead and brakes as hard as it can.
-fn behind<R: Rules>(contract: &Contract, zone: &Zone, ego: &Vehicle, other: &Other) -> f32 {
+fn behind<R: Rules>(contract: &Contract, zone: &Zone, ego: &Own, other: &Other) -> f32 {
     let gap = zone.lead.from - (ego.s + contract.position_error - other.bounds.s.from);
     if gap < 0.0 {
         // Not behind it at all.
@@ -274,14 +266,14 @@ pub(super) fn granted(
     contract: &Contract,
     passage: Passage,
     zone: &Zone,
-    (ego, other): (&Vehicle, &Other),
+    (ego, other): (&Own, &Other),
 ) -> bool {
     let Some(rule) = contract.precedence else {
         return false;
     };
     let settled = match passage {
         Passage::Before { .. } => true,
-        Passage::Ahead { .. } => ego.s - contract.position_error - zone.other.from > zone.lead.from,
+        Passage::Ahead { .. } => ego.least - zone.other.from > zone.lead.from,
         Passage::Never => false,
     };
     let farthest = Reach {
@@ -296,17 +288,17 @@ pub(super) fn granted(
 pub(super) fn settle<'z, R: Rules>(
     contract: &Contract,
     zones: impl Iterator<Item = &'z Zone>,
-    ego: &Vehicle,
+    ego: &Own,
     other: &mut Other,
 ) {
     let appeared = other.news == News::Appeared;
     for (index, zone) in (0_u8..).zip(zones) {
-        if !zone.is_lane() || !is_ahead::<R>(contract, zone, ego, other) {
+        if !zone.is_lane() || !is_ahead::<R>(zone, ego, other) {
             continue;
         }
         let slowest = Real::max(ego.speed - contract.speed_error, 0.0);
         let needs = margin::safe_gap(contract, other.bounds.speed.to, slowest);
-        let enough = gap_ahead(contract, zone, ego, other) >= needs;
+        let enough = gap_ahead(zone, ego, other) >= needs;
         if appeared || has(other.counted, index) || enough {
             other.settled |= 1 << index;
         }

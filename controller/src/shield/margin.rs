@@ -98,6 +98,11 @@ pub fn rush<R: Real>(contract: &Contract, speed: R, time: R) -> Reach<R> {
     )
 }
 
+/// The least that an other at `speed` (m/s, at least) gets in `time` (s), however hard it brakes.
+pub fn dawdle<R: Real>(contract: &Contract, speed: R, time: R) -> Reach<R> {
+    Reach::start(speed).at_least(-R::of(contract.other.braking), R::of(0.0), time)
+}
+
 /// Metres that are left between an other and its zone, `distance` ahead of it, after its `rush`
 /// until the ego has cleared its own zone.
 pub fn clears_before<R: Real>(contract: &Contract, distance: R, rush: Reach<R>) -> R {

@@ -2,9 +2,11 @@
 
 use super::contract::Contract;
 use super::margin;
+use super::own::Own;
 use super::plan::Plan;
 use super::reach::Reach;
 use crate::instant::{Instant, micros};
+use crate::junction::zone::FAR;
 use crate::observation::Vehicle;
 
 /// What is left of the plan that was verified last.
@@ -28,6 +30,8 @@ pub(crate) struct Memory {
     /// When the last command was given.
     given: Option<Instant>,
     last: Option<(Vehicle, Instant)>,
+    /// Arc length (m), at least, of the ego when it was seen last.
+    least: f32,
     /// Calls since `last`.
     blind: u16,
 }
@@ -39,6 +43,7 @@ impl Memory {
             commands: [None; 2],
             given: None,
             last: None,
+            least: -FAR,
             blind: 0,
         }
     }
@@ -94,7 +99,8 @@ impl Memory {
         let due = u64::from(remembered.calls).saturating_mul(micros(contract.period));
         let away = now.since(remembered.at).abs_diff(due);
         // Half a microsecond a period, from rounding the period.
-        away <= micros(contract.jitter).saturating_add(1 + u64::from(remembered.calls))
+        // The call that verified it was itself up to one jitter off the grid, and so is this one.
+        away <= (2 * micros(contract.jitter)).saturating_add(1 + u64::from(remembered.calls))
     }
 
     /// The ego's acceleration until the command to be given at `now` takes effect: least and most.
@@ -113,14 +119,16 @@ impl Memory {
         self.given = Some(now);
     }
 
-    /// Notes where the ego is at `now`, and whether its commands can have brought it there.
-    pub(crate) fn note(&mut self, contract: &Contract, ego: &Vehicle, now: Instant) -> bool {
+    /// Notes where the ego is at `now`; and whether its commands can have brought it there.
+    pub(crate) fn note(&mut self, contract: &Contract, ego: &Vehicle, now: Instant) -> (Own, bool) {
         let possible = self
             .last
             .is_none_or(|(last, at)| self.can(contract, &last, ego, now.seconds_since(at)));
+        let own = Own::new(contract, ego, if possible { self.least } else { -FAR });
         self.last = Some((*ego, now));
+        self.least = own.least;
         self.blind = 0;
-        possible
+        (own, possible)
     }
 
     /// The ego's speed (m/s), at least, if it is not seen at `now`.

@@ -13,6 +13,7 @@ pub(crate) mod door;
 mod hazard;
 pub mod margin;
 mod memory;
+mod own;
 mod plan;
 pub(crate) mod precedence;
 pub mod reach;
@@ -39,6 +40,8 @@ use clock::{Clock, Tick};
 use core::marker::PhantomData;
 use hazard::{Hazards, Passage};
 use memory::Memory;
+use own::Own;
+use precedence::PairMemory;
 use tracks::{Findings, Tracks};
 use verified::{Verified, best, passage_margin, spare};
 use waiting::{Presence, RestState, Sighting};
@@ -153,7 +156,7 @@ impl core::error::Error for NotReady {}
 
 /// What a decision is made of, once the observation is noted.
 struct Scene<'s> {
-    ego: &'s Vehicle,
+    ego: &'s Own,
     hazards: &'s Hazards,
     /// The accelerations that are in effect: least and most.
     in_effect: [f32; 2],
@@ -228,6 +231,14 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
     /// [`EnterError::PositionError`]; nothing is changed then.
     pub fn set_contract(&mut self, contract: Contract) -> Result<(), EnterError> {
         tells_apart(&contract, self.way)?;
+        if contract.precedence != self.contract.precedence {
+            // What was counted by the former rule says nothing about this one.
+            self.presence = Presence::default();
+            for other in self.tracks.iter_mut() {
+                other.pair = PairMemory::default();
+                other.pair.forget();
+            }
+        }
         self.contract = contract;
         self.replaced = true;
         Ok(())
@@ -291,6 +302,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         let contract = &self.contract;
         let ego = door::ego(self.way, contract, &observation.ego).map_err(NotReady::Fault)?;
         let mut next = self.copy();
+        let (ego, _) = next.memory.note(contract, &ego, now);
         let findings = next.look((now, Tick::First), &ego, observation);
         let mut hazards = Hazards::new();
         hazards.add::<N, R>(contract, self.way, (&ego, &next.tracks), findings.closed);
@@ -331,6 +343,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         }
         let contract = &self.contract;
         let ego = door::ego(self.way, contract, &observation.ego)?;
+        let ego = Own::new(contract, &ego, -FAR);
         let mut tracks = Tracks::<N>::new();
         let now = Instant::default();
         let findings = tracks.note::<R>(contract, self.way, now, &ego, observation);
@@ -379,11 +392,12 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         }
     }
 
-    /// The ego's own state cannot be trusted: it carries on with the plan, if its commands were given in time.
+    /// The ego's own state cannot be trusted: it carries on with the plan, if its commands were given in time and the
+    /// contract is the one for which it was verified.
     fn blind(&mut self, (now, tick): (Instant, Tick), fault: Fault, on_time: bool) -> Decision {
         self.tracks.coast::<R>(&self.contract, now);
         self.wait((now, tick), None);
-        if !on_time {
+        if !on_time || self.replaced {
             self.void();
         }
         let in_effect = self.memory.in_effect(&self.contract, now);
@@ -404,7 +418,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
     fn look(
         &mut self,
         when: (Instant, Tick),
-        ego: &Vehicle,
+        ego: &Own,
         observation: &Observation<'_>,
     ) -> Findings {
         let (now, _) = when;
@@ -417,7 +431,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
     }
 
     /// Notes who has arrived and who rests, and over whom the ego has precedence.
-    fn wait(&mut self, (now, tick): (Instant, Tick), ego: Option<&Vehicle>) {
+    fn wait(&mut self, (now, tick): (Instant, Tick), ego: Option<&Own>) {
         let contract = &self.contract;
         let Some(rule) = contract.precedence else {
             return;
@@ -498,7 +512,8 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         (proposal, recheck): (f32, bool),
     ) -> Decision {
         let (now, _) = when;
-        let deviated = !self.memory.note(&self.contract, ego, now);
+        let (ego, possible) = self.memory.note(&self.contract, ego, now);
+        let (ego, deviated) = (&ego, !possible);
         if deviated {
             self.tracks.iter_mut().for_each(|other| other.counted = 0);
         }
@@ -666,7 +681,7 @@ fn tells_apart(contract: &Contract, way: Way<'_>) -> Result<(), EnterError> {
 fn settle<const N: usize, R: Rules>(
     contract: &Contract,
     way: Way<'_>,
-    ego: &Vehicle,
+    ego: &Own,
     tracks: &mut Tracks<N>,
 ) {
     for other in tracks.iter_mut() {

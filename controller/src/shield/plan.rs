@@ -4,6 +4,8 @@
 ///
 /// A plan is a fixed sequence of commands, so that it can be carried out blindly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Plan {
     /// For so many periods the ego accelerates at [`super::Ego::go`]; then it brakes.
     pub go: u16,

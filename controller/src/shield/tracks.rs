@@ -3,12 +3,13 @@
 use super::bounds::Bounds;
 use super::contract::Contract;
 use super::door;
+use super::own::Own;
 use super::precedence::{PairMemory, ZoneSet, has};
 use super::rules::Rules;
 use super::waiting::{RestState, Sighting};
 use crate::fault::Fault;
 use crate::instant::Instant;
-use crate::junction::zone::{FAR, Zone};
+use crate::junction::zone::Zone;
 use crate::junction::{PathId, RouteConflict, Way};
 use crate::observation::{Candidate, Observation, Track, Vehicle};
 use heapless::Vec;
@@ -28,6 +29,8 @@ pub(crate) struct Other {
     pub(crate) seen: bool,
     /// What is new of it.
     pub(crate) news: News,
+    /// It has no zone ahead any more: it is known only so that it does not count as a newcomer.
+    gone: bool,
     /// Lanes that the plan in force enters ahead of it, with the gap that it needs.
     pub(crate) counted: ZoneSet,
     /// Lanes in which the ego is ahead of it, and it has had the gap to keep its distance.
@@ -84,6 +87,7 @@ impl<const N: usize> Tracks<N> {
         Self(Vec::new())
     }
 
+    /// Everybody who is known, in fixed places; those who have left have no hazards.
     pub(crate) fn iter(&self) -> impl Iterator<Item = &Other> {
         self.0.iter()
     }
@@ -101,7 +105,11 @@ impl<const N: usize> Tracks<N> {
     pub(crate) fn coast<R: Rules>(&mut self, contract: &Contract, now: Instant) {
         for other in &mut self.0 {
             other.seen = false;
+            let least = other.bounds.s.from;
             other.bounds = other.coasting::<R>(contract, now);
+            if least > other.bounds.s.from {
+                other.bounds.s.from = least;
+            }
         }
     }
 
@@ -113,7 +121,7 @@ impl<const N: usize> Tracks<N> {
         contract: &Contract,
         way: Way<'_>,
         now: Instant,
-        ego: &Vehicle,
+        ego: &Own,
         seen: &Observation<'_>,
     ) -> Findings {
         let mut findings = Findings::default();
@@ -139,90 +147,89 @@ impl<const N: usize> Tracks<N> {
                 );
             }
         }
-        let passed = |zone: &Zone| ego.s - contract.position_error >= zone.ego.to;
-        self.0.retain(|other| {
-            let conflict = way.conflict(other.path);
-            conflict.is_some_and(|conflict| other.matters::<R>(conflict, passed))
-        });
+        for other in &mut self.0 {
+            let ahead = other.entry::<R>(way, ego.least, 0.0);
+            other.gone |= ahead.is_none();
+        }
         findings
     }
 
     fn note_candidate<R: Rules>(
         &mut self,
         (contract, way): (&Contract, Way<'_>),
-        (now, ego): (Instant, &Vehicle),
+        (now, ego): (Instant, &Own),
         (track, candidate): (&Track, Candidate),
         findings: &mut Findings,
     ) {
         let (number, path) = (track.number, candidate.path);
         let known = |other: &&mut Other| other.number == number && other.path == path;
         let checked = door::track(way, contract, track, candidate);
-        let error = contract.position_error;
         match (self.0.iter_mut().find(known), checked) {
             // Two vehicles of one number on one path: there is no place to watch the second one.
             (Some(other), _) if other.seen => {
-                if let Some(from) = unplaced(way, path, ego.s - error) {
+                if let Some(from) = unplaced(way, path, ego.least) {
                     findings.close(number, from);
                 }
             }
-            (Some(other), Ok(vehicle)) => {
-                if !other.bounds.allow(contract, vehicle.s, vehicle.speed) {
-                    findings.breach = findings.breach.or(Some(number));
-                    other.news = News::Broke;
-                    (other.counted, other.settled) = (0, 0);
-                }
-                other.see(contract, &vehicle, now);
-            }
+            (Some(other), Ok(vehicle)) => other.meet(contract, &vehicle, now, findings),
             // It coasts.
             (Some(_), Err(fault)) => findings.fault = findings.fault.or(Some(fault)),
             (None, Ok(vehicle)) => {
                 let other = Other::new(contract, number, path, &vehicle, now);
-                let entry = way.conflict(path).and_then(|conflict| {
-                    let passed = |zone: &Zone| ego.s - error >= zone.ego.to;
-                    other.entry::<R>(conflict, passed)
-                });
-                if let Some(entry) = entry {
-                    self.add::<R>(way, ego, (other, entry), findings);
+                // One that seems to have left may seem not to have in the next observation: it is known from now on.
+                let spare = 2.0 * contract.position_error;
+                if other.entry::<R>(way, ego.least, spare).is_some() {
+                    self.add::<R>((contract, way), ego, other, findings);
                 }
             }
             // Nobody knows where it is: its zones may be occupied.
             (None, Err(fault)) => {
                 findings.fault = findings.fault.or(Some(fault));
-                if let Some(from) = unplaced(way, path, ego.s - error) {
+                if let Some(from) = unplaced(way, path, ego.least) {
                     findings.close(number, from);
                 }
             }
         }
     }
 
-    /// Adds a newcomer whose first zone the ego enters at `entry` (m). Without room the one whose zones are farthest
-    /// is not watched.
+    /// Adds a newcomer. Without room the one whose zones the ego enters last is not watched.
     fn add<R: Rules>(
         &mut self,
-        way: Way<'_>,
-        ego: &Vehicle,
-        (mut newcomer, mut entry): (Other, f32),
+        (contract, way): (&Contract, Way<'_>),
+        ego: &Own,
+        mut newcomer: Other,
         findings: &mut Findings,
     ) {
         if self.0.is_full() {
-            let mut replace = |other: &mut Other| {
-                let passed = |zone: &Zone| ego.s >= zone.ego.to;
-                let conflict = way.conflict(other.path);
-                let its = conflict.and_then(|conflict| other.entry::<R>(conflict, passed));
-                let its = its.unwrap_or(FAR);
-                if its > entry {
+            // What has left by more than sensors can err in two observations will never seem not to have.
+            let spare = 2.0 * contract.position_error;
+            let for_good = |other: &Other| other.entry::<R>(way, ego.least, spare).is_none();
+            if let Some(place) = self
+                .0
+                .iter()
+                .position(|other| other.gone && for_good(other))
+            {
+                self.0.swap_remove(place);
+            }
+        }
+        if !self.0.is_full() {
+            let _ = self.0.push(newcomer);
+            return;
+        }
+        let Some(mut entry) = newcomer.entry::<R>(way, ego.least, 0.0) else {
+            // It has left, and there is no room to remember it.
+            return;
+        };
+        for other in self.0.iter_mut().filter(|other| !other.gone) {
+            match other.entry::<R>(way, ego.least, 0.0) {
+                Some(its) if its > entry => {
                     core::mem::swap(other, &mut newcomer);
                     entry = its;
                 }
-            };
-            self.0.iter_mut().for_each(&mut replace);
-            if entry < FAR {
-                findings.close(newcomer.number, entry);
+                _ => {}
             }
-            return;
         }
-        // There is room.
-        let _ = self.0.push(newcomer);
+        findings.close(newcomer.number, entry);
     }
 }
 
@@ -260,6 +267,7 @@ impl Other {
             bounds: Bounds::after(contract, s, speed, 0.0),
             seen: true,
             news: News::Appeared,
+            gone: false,
             counted: 0,
             settled: 0,
             pair: PairMemory::default(),
@@ -267,10 +275,34 @@ impl Other {
         }
     }
 
-    fn see(&mut self, contract: &Contract, vehicle: &Vehicle, now: Instant) {
-        (self.s, self.speed, self.at) = (vehicle.s, vehicle.speed, now);
+    /// Notes that it is seen again, and whether it can have come there.
+    fn meet(
+        &mut self,
+        contract: &Contract,
+        vehicle: &Vehicle,
+        now: Instant,
+        findings: &mut Findings,
+    ) {
+        let (s, speed) = (vehicle.s, vehicle.speed);
+        let seen = Bounds::after(contract, s, speed, 0.0);
+        let least = self.bounds.s.from;
+        let possible = self.bounds.allow(contract, s, speed);
+        (self.s, self.speed, self.at) = (s, speed, now);
+        self.bounds = seen;
         self.seen = true;
-        self.bounds = Bounds::after(contract, vehicle.s, vehicle.speed, 0.0);
+        if possible {
+            // It never moves backwards, whatever the sensors say: what it has left, it has left for ever.
+            if least > seen.s.from && least <= seen.s.to {
+                self.bounds.s.from = least;
+            }
+        } else if self.gone {
+            // Another one, by the number of one that has left.
+            *self = Self::new(contract, self.number, self.path, vehicle, now);
+        } else {
+            self.news = News::Broke;
+            (self.counted, self.settled) = (0, 0);
+            findings.breach = findings.breach.or(Some(self.number));
+        }
     }
 
     fn coasting<R: Rules>(&self, contract: &Contract, now: Instant) -> Bounds {
@@ -289,30 +321,13 @@ impl Other {
         }
     }
 
-    /// Whether there is a zone that neither it has left nor the ego has `passed`.
-    fn matters<R: Rules>(&self, conflict: &RouteConflict, passed: impl Fn(&Zone) -> bool) -> bool {
-        self.ahead::<R>(conflict, passed).next().is_some()
-    }
-
-    /// Where the ego enters the first zone that neither it has left nor the ego has `passed` (m).
-    fn entry<R: Rules>(
-        &self,
-        conflict: &RouteConflict,
-        passed: impl Fn(&Zone) -> bool,
-    ) -> Option<f32> {
-        let entries = self.ahead::<R>(conflict, passed).map(|zone| zone.ego.from);
-        entries.reduce(f32::min)
-    }
-
-    fn ahead<'c, R: Rules>(
-        &self,
-        conflict: &'c RouteConflict,
-        passed: impl Fn(&Zone) -> bool + 'c,
-    ) -> impl Iterator<Item = &'c Zone> + 'c {
-        let least = self.bounds.s.from;
-        conflict
-            .zones()
-            .filter(move |zone| !passed(zone) && !R::left(zone, least))
+    /// Where (m) the ego, which is at `ego` (m) at least, enters the first zone that neither has left by more than
+    /// `spare` (m).
+    fn entry<R: Rules>(&self, way: Way<'_>, ego: f32, spare: f32) -> Option<f32> {
+        let least = self.bounds.s.from - spare;
+        let ahead = |zone: &&Zone| ego - spare < zone.ego.to && !R::left(zone, least);
+        let zones = way.conflict(self.path)?.zones().filter(ahead);
+        zones.map(|zone| zone.ego.from).reduce(f32::min)
     }
 
     /// Whether the ego is ahead of it in lane number `index`, and it keeps its distance.

@@ -1,9 +1,9 @@
 //! Who has arrived, and who rests for how long, while two vehicles wait for each other.
 
 use super::contract::{Contract, Precedence};
+use super::own::Own;
 use crate::instant::{Instant, micros};
 use crate::junction::zone::Span;
-use crate::observation::Vehicle;
 
 /// Whether a vehicle is at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -191,13 +191,9 @@ pub struct Sighting {
 
 impl Sighting {
     /// What is sensed of the ego, or that it is not.
-    pub(super) fn of_ego(contract: &Contract, ego: Option<&Vehicle>) -> Self {
-        let error = contract.position_error;
+    pub(super) fn of_ego(contract: &Contract, ego: Option<&Own>) -> Self {
         Self {
-            s: ego.map(|ego| Span {
-                from: ego.s - error,
-                to: ego.s + error,
-            }),
+            s: ego.map(|ego| ego.span(contract)),
             rest: ego.map_or(RestState::Perhaps, |ego| RestState::of(contract, ego.speed)),
         }
     }

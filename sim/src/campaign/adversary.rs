@@ -1,9 +1,10 @@
 //! Drivers that try to be hit, and keep the contract.
 
 use super::scenario::Scenario;
-use cede_controller::Zone;
+use crate::meeting::path;
 use cede_controller::kinematics::{STEP, State};
 use cede_controller::shield::margin::safe_gap;
+use cede_controller::{RouteConflict, Zone};
 use rand::RngExt;
 use rand_pcg::Pcg64;
 
@@ -106,8 +107,8 @@ impl Adversary {
 
 /// The zones of vehicle `me` with vehicle 0, as that one sees them.
 fn zones(scenario: &Scenario, me: usize) -> impl Iterator<Item = &Zone> {
-    let conflict = scenario.vehicles[0].scene.conflicts().get(me - 1);
-    conflict.into_iter().flat_map(|m| m.zones())
+    let conflict = scenario.junction.conflict(path(0), path(me));
+    conflict.into_iter().flat_map(RouteConflict::zones)
 }
 
 /// The acceleration that brings `me` into the middle of its zone when the ego is in the middle of its own.

@@ -10,17 +10,23 @@ mod scenario;
 pub use scenario::{Scenario, Setup};
 
 use crate::judge::Judge;
+use crate::meeting::{instant, path};
 use crate::stepper;
 use adversary::Adversary;
 use cede_controller::dangerous::{Rules, Sound};
 use cede_controller::kinematics::{STEP, State};
-use cede_controller::{Cause, Decision, Fault, Footprint, Observation, Shield, Vehicle};
+use cede_controller::{
+    Cause, Decision, Fault, Footprint, Observation, RouteConflict, Shield, Track, Vehicle,
+};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
 /// Most other vehicles of a scenario.
 pub const OTHERS: usize = cede_controller::MAX_OTHERS;
+
+/// A vehicle that is so near (m) to the end of its path is taken away.
+const AWAY: f32 = 1.0;
 
 /// What a campaign saw.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -84,16 +90,15 @@ fn run<R: Rules>(setup: Setup, seed: u64, shielded: bool, judge: &mut Judge) -> 
     let Some(scenario) = Scenario::random(setup, &mut rng) else {
         return Tally::default();
     };
-    World::<R>::new(scenario, rng).run(shielded, judge)
+    World::<R>::new(&scenario, rng).map_or_else(Tally::default, |world| world.run(shielded, judge))
 }
 
 /// What drives one vehicle.
-enum Mind<R: Rules> {
+enum Mind<'s, R: Rules> {
     Shielded {
-        shield: Box<Shield<OTHERS, R>>,
+        shield: Box<Shield<'s, OTHERS, R>>,
         careless: Careless,
-        /// Periods for which the sensors are still blind.
-        blind: u32,
+        sight: Sight,
     },
     Adversary(Adversary),
 }
@@ -119,51 +124,81 @@ impl Careless {
     }
 }
 
-struct World<R: Rules> {
-    scenario: Scenario,
+/// What a shielded vehicle fails to see, for as many steps.
+#[derive(Default)]
+struct Sight {
+    /// Itself.
+    blind: u32,
+    /// Each vehicle.
+    missing: [u32; OTHERS + 1],
+}
+
+impl Sight {
+    /// One more step, with failures of the given probability.
+    fn fail(&mut self, probability: f64, rng: &mut Pcg64) {
+        let failures = std::iter::once(&mut self.blind).chain(&mut self.missing);
+        for left in failures {
+            if *left > 0 {
+                *left -= 1;
+            } else if rng.random_bool(probability) {
+                *left = rng.random_range(1..40);
+            }
+        }
+    }
+}
+
+struct World<'s, R: Rules> {
+    scenario: &'s Scenario,
     rng: Pcg64,
     states: Vec<State>,
-    minds: Vec<Mind<R>>,
+    /// Who has come to the end of its path, and is taken away.
+    gone: Vec<bool>,
+    minds: Vec<Mind<'s, R>>,
     /// The acceleration in effect, and the command that may come late.
     in_effect: Vec<f32>,
     commands: Vec<f32>,
 }
 
-impl<R: Rules> World<R> {
-    fn new(scenario: Scenario, mut rng: Pcg64) -> Self {
+impl<'s, R: Rules> World<'s, R> {
+    /// `None` if a shield cannot enter.
+    fn new(scenario: &'s Scenario, mut rng: Pcg64) -> Option<Self> {
         let count = scenario.vehicles.len();
-        let minds = (0..count)
-            .map(|i| {
-                if i > 0 && !scenario.setup.everyone {
-                    return Mind::Adversary(Adversary::random(&mut rng));
-                }
-                Mind::Shielded {
-                    shield: Box::new(Shield::with_rules(scenario.setup.contract)),
-                    careless: Careless {
-                        acceleration: 0.0,
-                        left: 0,
-                    },
-                    blind: 0,
-                }
+        let contract = scenario.setup.contract;
+        let mut mind = |i: usize| {
+            if i > 0 && !scenario.setup.everyone {
+                return Some(Mind::Adversary(Adversary::random(&mut rng)));
+            }
+            let shield = Shield::with_rules(contract, &scenario.junction, path(i)).ok()?;
+            Some(Mind::Shielded {
+                shield: Box::new(shield),
+                careless: Careless {
+                    acceleration: 0.0,
+                    left: 0,
+                },
+                sight: Sight::default(),
             })
-            .collect();
-        Self {
+        };
+        Some(Self {
+            minds: (0..count).map(&mut mind).collect::<Option<_>>()?,
             states: scenario.vehicles.iter().map(|v| v.start).collect(),
+            gone: vec![false; count],
             in_effect: vec![0.0; count],
             commands: vec![0.0; count],
-            minds,
             scenario,
             rng,
-        }
+        })
     }
 
     fn run(mut self, shielded: bool, judge: &mut Judge) -> Tally {
         let mut tally = Tally::default();
         for step in 0..self.scenario.setup.steps {
             for i in 0..self.minds.len() {
+                if self.gone[i] {
+                    continue;
+                }
                 let decision = self.decide(i, step, shielded);
                 if let Some(decision) = decision {
-                    let unverified = decision.cause == Cause::Fallback(Fault::Unverified);
+                    let unverified = decision.cause == Cause::Fallback(Fault::NoPlan);
                     if step == 0 && unverified && shielded {
                         // Switched on in danger: nothing is promised.
                         return Tally::default();
@@ -187,62 +222,71 @@ impl<R: Rules> World<R> {
 
     /// Gives vehicle `i` its command; a shielded one's decision is returned.
     fn decide(&mut self, i: usize, step: u32, shielded: bool) -> Option<Decision> {
-        let observation = self.observe(i);
         let (command, decision) = match &mut self.minds[i] {
             Mind::Adversary(adversary) => {
-                let command = adversary.accelerate(&self.scenario, &self.states, i, &mut self.rng);
+                let command = adversary.accelerate(self.scenario, &self.states, i, &mut self.rng);
                 (command, None)
             }
             Mind::Shielded {
-                shield,
-                careless,
-                blind,
+                careless, sight, ..
             } => {
                 let proposal = careless.propose(&mut self.rng);
-                let mut observation = observation;
-                if *blind > 0 {
-                    *blind -= 1;
-                    observation.ego.s = f32::NAN;
-                } else if step > 0 && self.rng.random_bool(self.scenario.setup.blackouts) {
-                    *blind = self.rng.random_range(1..40);
+                if step > 0 {
+                    sight.fail(self.scenario.setup.blackouts, &mut self.rng);
                 }
-                let scene = &self.scenario.vehicles[i].scene;
-                let decision = shield.filter(scene, &observation, proposal);
-                let command = if shielded {
-                    decision.acceleration
-                } else {
-                    proposal
-                };
-                (command, Some(decision))
+                let decision = self.filter(i, step, proposal);
+                let passed = shielded.then_some(decision).flatten();
+                (passed.map_or(proposal, |d| d.acceleration), decision)
             }
         };
         self.commands[i] = command;
         decision
     }
 
-    /// What vehicle `i` senses.
-    fn observe(&mut self, i: usize) -> Observation<OTHERS> {
-        let contract = self.scenario.setup.contract;
-        let rng = &mut self.rng;
-        let mut sense = |j: usize| {
-            let mut error = |size: f32| size * rng.random_range(-1.0..=1.0_f32);
-            let state = self.states[j];
-            let speed = state.v + error(contract.speed_error());
-            Vehicle {
-                s: state.s + error(contract.position_error()),
-                speed: if speed > 0.0 { speed } else { 0.0 },
-                pose: self.scenario.vehicles[j].route.pose(state.s),
-            }
-        };
-        let mut observation = Observation {
-            ego: sense(i),
-            others: [None; OTHERS],
-        };
-        let others = (0..self.states.len()).filter(|&j| j != i);
-        for (slot, j) in observation.others.iter_mut().zip(others) {
-            *slot = Some(sense(j));
+    /// What the shield of vehicle `i` makes of a proposal.
+    fn filter(&mut self, i: usize, step: u32, proposal: f32) -> Option<Decision> {
+        let others: Vec<usize> = (0..self.states.len()).filter(|&j| j != i).collect();
+        let mut ego = self.sense(i);
+        let mut tracks = Vec::new();
+        for &j in &others {
+            let number = self.scenario.vehicles[j].number;
+            let track = Track::on(number, path(j), self.sense(j));
+            let place = self.rng.random_range(0..=tracks.len());
+            tracks.insert(place, track);
         }
-        observation
+        let Mind::Shielded { shield, sight, .. } = &mut self.minds[i] else {
+            return None;
+        };
+        for j in others {
+            let number = self.scenario.vehicles[j].number;
+            if self.gone[j] {
+                shield.forget(number);
+            }
+            if self.gone[j] || sight.missing[j] > 0 {
+                tracks.retain(|track| track.number != number);
+            }
+        }
+        if sight.blind > 0 {
+            ego.s = f32::NAN;
+        }
+        let observation = Observation {
+            ego,
+            tracks: &tracks,
+        };
+        Some(shield.filter(instant(step), &observation, proposal))
+    }
+
+    /// Vehicle `i`, with the errors of sensing.
+    fn sense(&mut self, i: usize) -> Vehicle {
+        let contract = &self.scenario.setup.contract;
+        let mut error = |size: f32| size * self.rng.random_range(-1.0..=1.0_f32);
+        let state = self.states[i];
+        let speed = state.v + error(contract.speed_error());
+        Vehicle {
+            s: state.s + error(contract.position_error()),
+            speed: if speed > 0.0 { speed } else { 0.0 },
+            pose: self.scenario.vehicles[i].route.pose(state.s),
+        }
     }
 
     /// One step of everybody.
@@ -266,14 +310,22 @@ impl<R: Rules> World<R> {
             self.in_effect[i] = self.commands[i];
         }
         stepper::advance(&mut self.states, &accelerations);
+        for ((gone, state), vehicle) in self
+            .gone
+            .iter_mut()
+            .zip(&self.states)
+            .zip(&self.scenario.vehicles)
+        {
+            *gone |= state.s > vehicle.route.length() - AWAY;
+        }
     }
 
     /// Whether a shielded vehicle touches any other.
     fn collision(&self, judge: &mut Judge) -> bool {
         let mut poses = [None; OTHERS + 1];
         let vehicles = self.scenario.vehicles.iter().zip(&self.states);
-        for (pose, (vehicle, state)) in poses.iter_mut().zip(vehicles) {
-            *pose = Some(vehicle.route.pose(state.s));
+        for ((pose, (vehicle, state)), gone) in poses.iter_mut().zip(vehicles).zip(&self.gone) {
+            *pose = (!gone).then(|| vehicle.route.pose(state.s));
         }
         let egos = if self.scenario.setup.everyone {
             poses.len()
@@ -285,13 +337,18 @@ impl<R: Rules> World<R> {
 
     /// Whether every shielded vehicle has passed the zones in which routes cross.
     fn cleared(&self) -> bool {
-        let vehicles = self.scenario.vehicles.iter().zip(&self.states);
-        vehicles
-            .zip(&self.minds)
+        let passed = |i: usize| {
+            let others = (0..self.states.len()).filter(|&j| j != i);
+            let conflicts =
+                others.filter_map(|j| self.scenario.junction.conflict(path(i), path(j)));
+            let mut zones = conflicts
+                .flat_map(RouteConflict::zones)
+                .filter(|z| !z.is_lane());
+            zones.all(|zone| self.states[i].s >= zone.ego.to)
+        };
+        let minds = self.minds.iter().enumerate();
+        minds
             .filter(|(_, mind)| matches!(mind, Mind::Shielded { .. }))
-            .all(|((vehicle, state), _)| {
-                let zones = vehicle.scene.conflicts().iter().flat_map(|m| m.zones());
-                zones.filter(|z| !z.is_lane()).all(|z| state.s >= z.ego.to)
-            })
+            .all(|(i, _)| passed(i))
     }
 }

@@ -1,11 +1,12 @@
 //! Random scenarios: vehicles on random routes through one intersection.
 
 use super::OTHERS;
+use crate::meeting::{conflict, crossroads};
 use cede_controller::kinematics::State;
 use cede_controller::separation::OrientedBox;
 use cede_controller::shield::margin::safe_gap;
 use cede_controller::{
-    Contract, ContractBuilder, Footprint, Path, Point, Precedence, RightOfWay, Route, Scene,
+    Class, Contract, ContractBuilder, Footprint, Junction, Point, Precedence, Route, RouteConflict,
     Vector, Zone,
 };
 use rand::RngExt;
@@ -111,11 +112,20 @@ impl Setup {
 /// A vehicle of a scenario.
 #[derive(Clone, Debug)]
 pub(super) struct Entrant {
-    pub(super) route: Route<32>,
+    pub(super) route: Route<POINTS>,
     pub(super) start: State,
-    /// The others' routes as it meets them, in the order of the vehicles without itself.
-    pub(super) scene: Scene<OTHERS>,
+    /// What tracking calls it.
+    pub(super) number: u16,
 }
+
+/// Most vehicles of a scenario.
+const VEHICLES: usize = OTHERS + 1;
+
+/// Points of a route, at most.
+const POINTS: usize = 32;
+
+/// A junction with a path for each vehicle of a scenario, followed exactly.
+pub(super) type Crossing = Junction<VEHICLES, { VEHICLES * POINTS }>;
 
 /// Vehicles that are about to meet.
 #[derive(Clone, Debug)]
@@ -124,6 +134,8 @@ pub struct Scenario {
     /// The speed (m/s) beyond which shielded vehicles do not accelerate, whatever is commanded.
     pub(super) limit: f32,
     pub(super) vehicles: Vec<Entrant>,
+    /// Path i is that of vehicle i.
+    pub(super) junction: Crossing,
 }
 
 /// Where a lane enters or leaves the intersection, and the outward direction there.
@@ -139,6 +151,9 @@ const ATTEMPTS: u32 = 20;
 /// Metres from a route's start to where its lane begins to bend.
 const APPROACH: f32 = 60.0;
 
+/// Metres from where its lane has bent to a route's end: a path may be 512 m long.
+const EXIT: f32 = 400.0;
+
 impl Scenario {
     /// A random scenario with as many vehicles as `setup` asks for, or fewer if there is no room;
     /// `None` without room for two, or if their number is out of range.
@@ -148,7 +163,7 @@ impl Scenario {
             return None;
         }
         let layout = Layout::random(rng);
-        let mut placed: Vec<(Route<32>, State)> = Vec::new();
+        let mut placed: Vec<(Route<POINTS>, State)> = Vec::new();
         for _ in 0..setup.vehicles {
             let mut candidates = (0..ATTEMPTS)
                 .filter_map(|_| Some((layout.route(setup, rng)?, start(setup, rng))))
@@ -160,19 +175,19 @@ impl Scenario {
         if placed.len() < 2 {
             return None;
         }
-        let vehicles = (0..placed.len())
-            .map(|i| {
-                Some(Entrant {
-                    route: placed[i].0.clone(),
-                    start: placed[i].1,
-                    scene: scene(&placed, i)?,
-                })
-            })
-            .collect::<Option<_>>()?;
+        let junction = junction(&placed)?;
+        let limit = limit(setup, rng);
+        let vehicles = (0..).zip(placed).map(|(i, (route, start))| Entrant {
+            route,
+            start,
+            // Different for each, and otherwise anything.
+            number: 16 * rng.random_range(0..4096) + i,
+        });
         Some(Self {
             setup,
-            limit: limit(setup, rng),
-            vehicles,
+            limit,
+            vehicles: vehicles.collect(),
+            junction,
         })
     }
 }
@@ -199,27 +214,19 @@ fn limit(setup: Setup, rng: &mut Pcg64) -> f32 {
     }
 }
 
-fn path(route: &Route<32>) -> Path<'_, 32> {
-    Path {
-        route,
-        footprint: Footprint::PAPER,
+/// The junction of all vehicles; in a tie, vehicles with lower numbers go first.
+fn junction(placed: &[(Route<POINTS>, State)]) -> Option<Crossing> {
+    let mut builder = Crossing::builder();
+    builder.tolerance(0.0);
+    let mut paths = Vec::new();
+    for (route, _) in placed {
+        let path = builder.path(route, Class::Car, Footprint::PAPER).ok()?;
+        for &first in &paths {
+            builder.right_of_way(first, path).ok()?;
+        }
+        paths.push(path);
     }
-}
-
-/// The scene of vehicle `i`; in a tie, vehicles with lower numbers go first.
-fn scene(placed: &[(Route<32>, State)], i: usize) -> Option<Scene<OTHERS>> {
-    let numbers: Vec<usize> = (0..placed.len()).filter(|&j| j != i).collect();
-    let others: Vec<_> = numbers.iter().map(|&j| path(&placed[j].0)).collect();
-    let mut scene = Scene::new(path(&placed[i].0), &others).ok()?;
-    for (number, &j) in numbers.iter().enumerate() {
-        let right_of_way = if i < j {
-            RightOfWay::Ego
-        } else {
-            RightOfWay::Other
-        };
-        scene.set_right_of_way(number, right_of_way);
-    }
-    Some(scene)
+    builder.build().ok()
 }
 
 fn start(setup: Setup, rng: &mut Pcg64) -> State {
@@ -241,15 +248,22 @@ fn start(setup: Setup, rng: &mut Pcg64) -> State {
 
 /// Whether a vehicle has room among those that are there: nobody overlaps, and whoever is behind another
 /// in its lane can stop behind it.
-fn fits(setup: Setup, (route, start): &(Route<32>, State), placed: &[(Route<32>, State)]) -> bool {
-    let covers =
-        |route: &Route<32>, state: &State| OrientedBox::new(route.pose(state.s), Footprint::PAPER);
+fn fits(
+    setup: Setup,
+    (route, start): &(Route<POINTS>, State),
+    placed: &[(Route<POINTS>, State)],
+) -> bool {
+    let covers = |route: &Route<POINTS>, state: &State| {
+        OrientedBox::new(route.pose(state.s), Footprint::PAPER)
+    };
     let here = covers(route, start);
     placed.iter().all(|(other_route, other)| {
         let apart = here.separation(&covers(other_route, other)) > 0.5;
+        let routes = [route, other_route].map(|route| (route, Footprint::PAPER));
         apart
-            && Scene::<1>::new(path(route), &[path(other_route)]).is_ok_and(|scene| {
-                let zones = || scene.conflicts().iter().flat_map(|m| m.zones());
+            && crossroads(routes).is_ok_and(|junction| {
+                let conflict = conflict(&junction, 0);
+                let zones = || conflict.into_iter().flat_map(RouteConflict::zones);
                 zones().all(|zone| leaves_room(setup, zone, start, other))
                     && zones().all(|zone| leaves_room(setup, &zone.swapped(), other, start))
             })
@@ -289,7 +303,7 @@ impl Layout {
         }
     }
 
-    fn route(&self, setup: Setup, rng: &mut Pcg64) -> Option<Route<32>> {
+    fn route(&self, setup: Setup, rng: &mut Pcg64) -> Option<Route<POINTS>> {
         let to = if setup.one_exit {
             0
         } else {
@@ -304,7 +318,7 @@ impl Layout {
         let bend = (0..=12_u8).map(|i| bezier(control, f32::from(i) / 12.0));
         let points = std::iter::once(far(entry, APPROACH))
             .chain(bend)
-            .chain(std::iter::once(far(exit, 80.0)));
+            .chain(std::iter::once(far(exit, EXIT)));
         Route::new(points).ok()
     }
 

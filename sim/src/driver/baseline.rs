@@ -106,12 +106,14 @@ mod tests {
     use crate::episode::{End, Episode};
     use crate::evaluate::clearance;
     use crate::fixture::crossing;
+    use crate::meeting::Meeting;
     use cede_data::encounter::Role;
 
     fn run(baseline: Baseline, training: &[&Encounter], encounter: &Encounter) -> Episode {
         let factory = baseline.fit(training).unwrap();
-        let mut drivers = [0, 1].map(|i| factory.driver(encounter, i, 0));
-        Episode::run(encounter, &mut drivers, Some(clearance(encounter)))
+        let meeting = Meeting::new(encounter).unwrap();
+        let mut drivers = [0, 1].map(|i| factory.driver(&meeting, i, 0));
+        Episode::run(encounter, &mut drivers, Some(clearance(&meeting)))
     }
 
     #[test]

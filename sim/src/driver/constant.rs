@@ -1,6 +1,7 @@
 //! Two drivers without eyes: they keep a speed.
 
 use super::{Driver, DriverFactory, View};
+use crate::meeting::Meeting;
 use cede_controller::kinematics::STEP;
 use cede_data::encounter::{Encounter, Manoeuvre, Role};
 use std::collections::HashMap;
@@ -14,7 +15,7 @@ impl DriverFactory for InitialSpeed {
         "initial-speed"
     }
 
-    fn driver(&self, _: &Encounter, _: usize, _: u64) -> Box<dyn Driver> {
+    fn driver<'m>(&self, _: &'m Meeting<'_>, _: usize, _: u64) -> Box<dyn Driver + 'm> {
         Box::new(*self)
     }
 }
@@ -69,7 +70,8 @@ impl DriverFactory for MeanSpeed {
         "mean-speed"
     }
 
-    fn driver(&self, encounter: &Encounter, ego: usize, _: u64) -> Box<dyn Driver> {
+    fn driver<'m>(&self, meeting: &'m Meeting<'_>, ego: usize, _: u64) -> Box<dyn Driver + 'm> {
+        let encounter = meeting.encounter;
         let speed = Role::BOTH
             .get(ego)
             .and_then(|&role| self.speeds.get(&(role, encounter.judged(role).manoeuvre)));

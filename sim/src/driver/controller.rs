@@ -1,13 +1,14 @@
 //! The controller itself, as a driver: the code that runs in the vehicle.
 
 use super::{Driver, DriverFactory, View};
-use crate::observation_model::{Bystanders, scene};
-use cede_controller::kinematics::State;
+use crate::meeting::{Meeting, instant, path, sensed};
+use crate::observation_model::Bystanders;
+use cede_controller::kinematics::MAX_ACCELERATION;
 use cede_controller::{
-    Cause, Contract, Controller, Decision, Observation, Part, Policy, Scene, TrafficContext,
-    Vehicle,
+    Approach, Cause, Contract, Decision, Drive, Fault, Observation, Part, Policy, Track,
+    TrafficContext, Vehicle,
 };
-use cede_data::encounter::{Encounter, Role};
+use cede_data::encounter::Role;
 
 /// Cede: a policy behind the shield. Each vehicle considers the one that it meets;
 /// its policy also knows the traffic around them.
@@ -30,16 +31,15 @@ impl DriverFactory for Cede {
         "cede"
     }
 
-    fn driver(&self, encounter: &Encounter, ego: usize, _: u64) -> Box<dyn Driver> {
-        match scene(encounter, ego) {
-            Some(scene) => Box::new(Seat {
-                controller: Controller::new(self.policy, self.contract, part(ego)),
-                scene,
-                bystanders: Bystanders::new(encounter, ego),
+    fn driver<'m>(&self, meeting: &'m Meeting<'_>, ego: usize, _: u64) -> Box<dyn Driver + 'm> {
+        let drive = Drive::new(self.policy, self.contract, part(ego));
+        match drive.enter_with_room(&meeting.junction, path(ego)) {
+            Ok(approach) => Box::new(Seat {
+                approach,
+                bystanders: Bystanders::new(meeting.encounter, ego),
                 last: None,
             }),
-            // Without a vehicle to meet there is nothing to decide.
-            None => Box::new(Nobody),
+            Err(_) => Box::new(Refused),
         }
     }
 }
@@ -53,18 +53,44 @@ pub(super) const fn part(ego: usize) -> Part {
     }
 }
 
-/// What vehicle `view.ego` senses of itself and the one that it meets; `None` if it is not there itself.
-#[must_use]
-pub fn observe(view: &View<'_>) -> Option<Observation<1>> {
-    let vehicle = |(participant, state): (&cede_data::Participant, State)| Vehicle {
-        s: state.s,
-        speed: state.v,
-        pose: participant.route.pose(state.s),
-    };
-    Some(Observation {
-        ego: vehicle(view.own()?),
-        others: [view.rival().map(vehicle)],
-    })
+/// What a judged vehicle senses of itself and of the one that it meets, whose track number is its number in
+/// [`View::states`].
+pub(super) struct Sensed {
+    ego: Vehicle,
+    rival: u16,
+    track: Option<Track>,
+}
+
+impl Sensed {
+    /// What vehicle `view.ego` senses; `None` if it is not there itself.
+    pub(super) fn of(view: &View<'_>) -> Option<Self> {
+        let (own, state) = view.own()?;
+        let index = 1_usize.checked_sub(view.ego)?;
+        let rival = index as u16;
+        let on = |(participant, state): (&cede_data::Participant, _)| {
+            Track::on(rival, path(index), sensed(&participant.route, state))
+        };
+        Some(Self {
+            ego: sensed(&own.route, state),
+            rival,
+            track: view.rival().map(on),
+        })
+    }
+
+    pub(super) fn observation(&self) -> Observation<'_> {
+        Observation {
+            ego: self.ego,
+            tracks: self.track.as_slice(),
+        }
+    }
+
+    /// Track number of the other, if it is known not to be there any more.
+    pub(super) const fn gone(&self) -> Option<u16> {
+        match self.track {
+            Some(_) => None,
+            None => Some(self.rival),
+        }
+    }
 }
 
 /// What the bystanders are to vehicle `view.ego` now.
@@ -75,17 +101,22 @@ pub(super) fn around(bystanders: &Bystanders, view: &View<'_>) -> TrafficContext
         })
 }
 
-struct Seat {
-    controller: Controller<'static, 1>,
-    scene: Scene<1>,
+struct Seat<'m> {
+    approach: Approach<'m, 'static, 1>,
     bystanders: Bystanders,
     last: Option<Decision>,
 }
 
-impl Driver for Seat {
+impl Driver for Seat<'_> {
     fn accelerate(&mut self, view: &View<'_>) -> f32 {
-        self.controller.set_traffic(around(&self.bystanders, view));
-        self.last = observe(view).map(|seen| self.controller.decide(&self.scene, &seen));
+        self.approach.set_traffic(around(&self.bystanders, view));
+        self.last = Sensed::of(view).map(|seen| {
+            if let Some(gone) = seen.gone() {
+                self.approach.forget(gone);
+            }
+            self.approach
+                .decide(instant(view.step), &seen.observation())
+        });
         self.last.map_or(0.0, |decision| decision.acceleration)
     }
 
@@ -94,10 +125,15 @@ impl Driver for Seat {
     }
 }
 
-struct Nobody;
+/// Stands in for a driver whose shield cannot enter the junction: nothing is promised, and it stops.
+pub(super) struct Refused;
 
-impl Driver for Nobody {
+impl Driver for Refused {
     fn accelerate(&mut self, _: &View<'_>) -> f32 {
-        0.0
+        -MAX_ACCELERATION
+    }
+
+    fn cause(&self) -> Cause {
+        Cause::Fallback(Fault::NoPlan)
     }
 }

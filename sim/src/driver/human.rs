@@ -1,6 +1,7 @@
 //! The human driver of the synthetic scenarios, in anybody's encounter.
 
 use super::{Driver, DriverFactory, View, idm};
+use crate::meeting::Meeting;
 use cede_controller::UnitVector;
 use cede_controller::kinematics::STEP;
 use cede_controller::kinematics::State;
@@ -39,7 +40,8 @@ impl DriverFactory for Human {
         "human"
     }
 
-    fn driver(&self, encounter: &Encounter, ego: usize, seed: u64) -> Box<dyn Driver> {
+    fn driver<'m>(&self, meeting: &'m Meeting<'_>, ego: usize, seed: u64) -> Box<dyn Driver + 'm> {
+        let encounter = meeting.encounter;
         let Some(own) = encounter.participants.get(ego) else {
             return Box::new(Nobody);
         };
@@ -221,8 +223,9 @@ mod tests {
     fn run(left: [f32; 2], other: [f32; 2], seed: u64) -> Episode {
         let mut encounter = crossing(left, other);
         encounter.steps = 300; // People who stop take their time.
-        let mut drivers = [0, 1].map(|i| Human.driver(&encounter, i, seed));
-        Episode::run(&encounter, &mut drivers, Some(clearance(&encounter)))
+        let meeting = Meeting::new(&encounter).unwrap();
+        let mut drivers = [0, 1].map(|i| Human.driver(&meeting, i, seed));
+        Episode::run(&encounter, &mut drivers, Some(clearance(&meeting)))
     }
 
     #[test]

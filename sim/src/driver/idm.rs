@@ -1,10 +1,11 @@
 //! The intelligent driver model with stop-sign behaviour.
 
 use super::{Driver, DriverFactory, View};
+use crate::meeting::Meeting;
 use cede_controller::geometry::distance;
 use cede_controller::kinematics::STEP;
 use cede_controller::kinematics::State;
-use cede_data::encounter::{Encounter, Participant};
+use cede_data::encounter::Participant;
 
 /// Car following by the intelligent driver model; at the intersection it stops, and the one that stopped first goes first.
 ///
@@ -40,7 +41,7 @@ impl DriverFactory for Idm {
         "idm"
     }
 
-    fn driver(&self, _: &Encounter, _: usize, _: u64) -> Box<dyn Driver> {
+    fn driver<'m>(&self, _: &'m Meeting<'_>, _: usize, _: u64) -> Box<dyn Driver + 'm> {
         Box::new(AtStopSign {
             waited: 0,
             rival_waited: 0,

@@ -2,6 +2,7 @@
 
 use super::nearer_first::Decided;
 use super::{Driver, DriverFactory};
+use crate::meeting::Meeting;
 use crate::statistics::LogisticRegression;
 use cede_data::encounter::{Encounter, Manoeuvre, Role};
 use std::collections::HashMap;
@@ -72,9 +73,9 @@ impl DriverFactory for Logistic {
         "logistic"
     }
 
-    fn driver(&self, encounter: &Encounter, _: usize, _: u64) -> Box<dyn Driver> {
+    fn driver<'m>(&self, meeting: &'m Meeting<'_>, _: usize, _: u64) -> Box<dyn Driver + 'm> {
         Box::new(Decided {
-            first: self.first(encounter),
+            first: self.first(meeting.encounter),
         })
     }
 }

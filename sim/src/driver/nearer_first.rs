@@ -1,6 +1,7 @@
 //! The trivial rule: the vehicle that is nearer to its conflict point goes, the other stops.
 
 use super::{Driver, DriverFactory, View, right_of_way};
+use crate::meeting::Meeting;
 use cede_data::encounter::{Encounter, Role};
 
 /// Whoever is nearer to its conflict point at the start goes; the other stops and waits.
@@ -12,9 +13,9 @@ impl DriverFactory for NearerFirst {
         "nearer-first"
     }
 
-    fn driver(&self, encounter: &Encounter, _: usize, _: u64) -> Box<dyn Driver> {
+    fn driver<'m>(&self, meeting: &'m Meeting<'_>, _: usize, _: u64) -> Box<dyn Driver + 'm> {
         Box::new(Decided {
-            first: nearer(encounter),
+            first: nearer(meeting.encounter),
         })
     }
 }

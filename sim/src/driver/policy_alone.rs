@@ -1,10 +1,10 @@
 //! The controller's policy without its shield: what the shield is compared with.
 
-use super::controller::{around, part};
-use super::{Driver, DriverFactory, View, observe, scene};
+use super::controller::{Refused, Sensed, around, part};
+use super::{Driver, DriverFactory, View};
+use crate::meeting::{Meeting, path};
 use crate::observation_model::Bystanders;
-use cede_controller::{Contract, Controller, Policy, Scene};
-use cede_data::encounter::Encounter;
+use cede_controller::{Approach, Contract, Drive, Policy};
 
 /// Cede without the shield: for comparison, never for a vehicle.
 #[derive(Clone, Debug)]
@@ -25,27 +25,27 @@ impl DriverFactory for PolicyAlone {
         "cede"
     }
 
-    fn driver(&self, encounter: &Encounter, ego: usize, _: u64) -> Box<dyn Driver> {
+    fn driver<'m>(&self, meeting: &'m Meeting<'_>, ego: usize, _: u64) -> Box<dyn Driver + 'm> {
         // The contract is not looked at: only the shield does.
-        let controller = Controller::new(self.policy, Contract::WORST_CASE, part(ego));
-        Box::new(Alone {
-            seat: scene(encounter, ego).map(|scene| (controller, scene)),
-            bystanders: Bystanders::new(encounter, ego),
-        })
+        let drive = Drive::new(self.policy, Contract::WORST_CASE, part(ego));
+        match drive.enter_with_room(&meeting.junction, path(ego)) {
+            Ok(approach) => Box::new(Alone {
+                approach,
+                bystanders: Bystanders::new(meeting.encounter, ego),
+            }),
+            Err(_) => Box::new(Refused),
+        }
     }
 }
 
-struct Alone {
-    seat: Option<(Controller<'static, 1>, Scene<1>)>,
+struct Alone<'m> {
+    approach: Approach<'m, 'static, 1>,
     bystanders: Bystanders,
 }
 
-impl Driver for Alone {
+impl Driver for Alone<'_> {
     fn accelerate(&mut self, view: &View<'_>) -> f32 {
-        let Some((controller, scene)) = &mut self.seat else {
-            return 0.0;
-        };
-        controller.set_traffic(around(&self.bystanders, view));
-        observe(view).map_or(0.0, |seen| controller.proposal(scene, &seen))
+        self.approach.set_traffic(around(&self.bystanders, view));
+        Sensed::of(view).map_or(0.0, |seen| self.approach.proposal(&seen.observation()))
     }
 }

@@ -1,7 +1,7 @@
 //! Replay of recorded accelerations: the floor of the simulator's own error.
 
 use super::{Driver, DriverFactory, View};
-use cede_data::encounter::Encounter;
+use crate::meeting::Meeting;
 
 /// Applies the recorded accelerations step by step, whatever the others do; past the record's end, none.
 #[derive(Clone, Copy, Debug)]
@@ -12,7 +12,7 @@ impl DriverFactory for Replay {
         "replay"
     }
 
-    fn driver(&self, _: &Encounter, _: usize, _: u64) -> Box<dyn Driver> {
+    fn driver<'m>(&self, _: &'m Meeting<'_>, _: usize, _: u64) -> Box<dyn Driver + 'm> {
         Box::new(*self)
     }
 }

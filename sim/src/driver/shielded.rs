@@ -1,8 +1,9 @@
 //! Any driver behind the shield.
 
-use super::{Driver, DriverFactory, View, observe, scene};
-use cede_controller::{Cause, Contract, Scene, Shield};
-use cede_data::encounter::Encounter;
+use super::controller::{Refused, Sensed};
+use super::{Driver, DriverFactory, View};
+use crate::meeting::{Meeting, instant, path};
+use cede_controller::{Cause, Contract, Shield};
 
 /// Passes what another kind of driver wants through the shield that the controller carries.
 pub struct Shielded {
@@ -23,36 +24,38 @@ impl DriverFactory for Shielded {
         self.drivers.name()
     }
 
-    fn driver(&self, encounter: &Encounter, ego: usize, seed: u64) -> Box<dyn Driver> {
-        let driver = self.drivers.driver(encounter, ego, seed);
-        match scene(encounter, ego) {
-            Some(scene) => Box::new(Behind {
+    fn driver<'m>(&self, meeting: &'m Meeting<'_>, ego: usize, seed: u64) -> Box<dyn Driver + 'm> {
+        let driver = self.drivers.driver(meeting, ego, seed);
+        match Shield::enter(self.contract, &meeting.junction, path(ego)) {
+            Ok(shield) => Box::new(Behind {
                 driver,
-                shield: Shield::new(self.contract),
-                scene,
+                shield,
                 cause: Cause::Policy,
             }),
-            // With nobody to meet there is nothing to shield from.
-            None => driver,
+            Err(_) => Box::new(Refused),
         }
     }
 }
 
-struct Behind {
-    driver: Box<dyn Driver>,
-    shield: Shield<1>,
-    scene: Scene<1>,
+struct Behind<'m> {
+    driver: Box<dyn Driver + 'm>,
+    shield: Shield<'m, 1>,
     cause: Cause,
 }
 
-impl Driver for Behind {
+impl Driver for Behind<'_> {
     fn accelerate(&mut self, view: &View<'_>) -> f32 {
         let wanted = self.driver.accelerate(view);
-        let Some(seen) = observe(view) else {
+        let Some(seen) = Sensed::of(view) else {
             self.cause = Cause::Policy;
             return wanted;
         };
-        let decision = self.shield.filter(&self.scene, &seen, wanted);
+        if let Some(gone) = seen.gone() {
+            self.shield.forget(gone);
+        }
+        let decision = self
+            .shield
+            .filter(instant(view.step), &seen.observation(), wanted);
         self.cause = decision.cause;
         decision.acceleration
     }
@@ -75,12 +78,13 @@ mod tests {
     #[test]
     fn one_shielded_vehicle_prevents_the_collision_that_two_blind_ones_have() {
         let encounter = crossing([40.0, 8.0], [40.0, 8.0]);
+        let meeting = Meeting::new(&encounter).unwrap();
         let run = |first: &dyn DriverFactory| {
             let mut drivers = [
-                first.driver(&encounter, 0, 0),
-                InitialSpeed.driver(&encounter, 1, 0),
+                first.driver(&meeting, 0, 0),
+                InitialSpeed.driver(&meeting, 1, 0),
             ];
-            Episode::run(&encounter, &mut drivers, Some(clearance(&encounter)))
+            Episode::run(&encounter, &mut drivers, Some(clearance(&meeting)))
         };
         assert_eq!(run(&InitialSpeed).end, End::Collision);
         let shielded = Shielded::new(Box::new(InitialSpeed), Contract::WORST_CASE);

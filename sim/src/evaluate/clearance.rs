@@ -1,19 +1,19 @@
 //! Where the two vehicles have left their conflict zones.
 
-use crate::observation_model::scene;
+use crate::meeting::Meeting;
 use cede_controller::RouteConflict;
-use cede_data::encounter::{Encounter, Role};
+use cede_data::encounter::Role;
 
 /// The arc lengths (m) at which the two have left the last of their conflict zones for good; where the
 /// routes end in one lane, the routes' ends.
 #[must_use]
-pub fn clearance(encounter: &Encounter) -> [f32; 2] {
+pub fn clearance(meeting: &Meeting<'_>) -> [f32; 2] {
     Role::BOTH.map(|role| {
-        let scene = scene(encounter, role as usize);
-        let zones = scene
-            .iter()
-            .flat_map(|scene| scene.conflicts().iter().flat_map(RouteConflict::zones));
-        let last = zones.map(|zone| zone.ego.to).fold(0.0, f32::max);
-        last.min(encounter.judged(role).route.length())
+        let end = meeting.encounter.judged(role).route.length();
+        let conflict = meeting.conflict(role as usize);
+        // Where only the roads past the records meet, nobody was seen to drive.
+        let zones = conflict.into_iter().flat_map(RouteConflict::zones);
+        let zones = zones.filter(|zone| zone.ego.from < end);
+        zones.map(|zone| zone.ego.to).fold(0.0, f32::max).min(end)
     })
 }

@@ -7,6 +7,9 @@ use cede_controller::dangerous::unchecked;
 use cede_controller::{Contract, Real};
 
 /// The contract of which nothing is known but what [`assumed`] says.
+///
+/// It has no jitter: its period stands for [`Contract::shortest_period`], its latency for [`Contract::switching`]. What is
+/// proved for every period and every latency up to it is proved for those of a contract with jitter.
 pub(super) fn any_contract() -> Contract {
     let [
         period,
@@ -42,7 +45,8 @@ pub(super) fn any_contract() -> Contract {
     unchecked(symbols)
 }
 
-/// What [`cede_controller::ContractBuilder::build`] demands of the numbers, but for their upper limits, which no lemma needs.
+/// What [`cede_controller::ContractBuilder::build`] demands of the numbers, but for upper limits that no lemma needs: those
+/// that bind ego and others together are given where they are used.
 pub(super) fn assumed() -> Vec<Formula> {
     let contract = any_contract();
     let (ego, other, follower) = (contract.ego(), contract.other(), contract.follower());

@@ -41,8 +41,10 @@ pub(super) fn lemmas() -> Vec<Lemma> {
                 "the brakes' latency forgotten",
                 &departs(
                     |contract, speed, previous, command| Departure {
-                        braking: Reach::start(speed + Term::of(contract.speed_error()))
-                            .at_most(Real::max(previous[1], command), Term::of(contract.period())),
+                        braking: Reach::start(speed + Term::of(contract.speed_error())).at_most(
+                            Real::max(previous[1], command),
+                            Term::of(contract.shortest_period()),
+                        ),
                         ..margin::departure(contract, speed, previous, command)
                     },
                     brakes,
@@ -176,7 +178,7 @@ fn departs(rule: Rule, say: impl Fn(&First) -> Claim) -> Claim {
         ["previous", "previous_least", "previous_most", "command"].map(acceleration);
     let (error, latency) = (
         Term::of(contract.speed_error()),
-        Term::of(contract.latency()),
+        Term::of(contract.switching()),
     );
     let states = [
         ["s", "v"],
@@ -193,7 +195,11 @@ fn departs(rule: Rule, say: impl Fn(&First) -> Claim) -> Claim {
         previous,
         bounds: [least, most],
         states,
-        times: [latency, Term::of(contract.period()) - latency, latency],
+        times: [
+            latency,
+            Term::of(contract.shortest_period()) - latency,
+            latency,
+        ],
     };
     let [start, ..] = states;
     let mut claim = say(&first);

@@ -93,13 +93,12 @@ pub(super) fn lemmas() -> Vec<Lemma> {
             ],
             &clears(margin::clearing),
             (
-                "the limiter's error with the wrong sign",
+                "the errors of speed with the wrong sign",
                 &clears(|contract, least, target| {
                     let go = Term::of(contract.ego().go);
                     let cap = Term::of(contract.ego().max_speed) + Term::of(contract.speed_error());
                     let (time, speed) = least.until(target, go, cap);
-                    let late = Term::of(contract.period()) + Term::of(contract.latency());
-                    (time + late, speed)
+                    (time + first(contract), speed)
                 }),
             ),
         ),
@@ -242,7 +241,7 @@ fn clears(rule: impl Fn(&Contract, Reach<Term>, Term) -> (Term, Term)) -> Claim 
     let (target, ramp) = (Term::symbol("target", "m"), seconds("ramp"));
     let (cap, go) = (limiter(&contract), Term::of(contract.ego().go));
     let (clears, least_speed) = rule(&contract, from, target);
-    let time = clears - Term::of(contract.period()) - Term::of(contract.latency());
+    let time = clears - first(&contract);
     Claim::new(
         [
             not_negative([from.speed]),
@@ -257,9 +256,23 @@ fn clears(rule: impl Fn(&Contract, Reach<Term>, Term) -> (Term, Term)) -> Claim 
     )
 }
 
-/// The speed from which on a limiter may hold it.
+/// The time from a decision until the first command of its plan is certainly in effect.
+pub(super) fn first(contract: &Contract) -> Term {
+    Term::of(contract.shortest_period()) + Term::of(contract.switching())
+}
+
+/// The speed from which on it may do without accelerating: `unlimited` says that its commands go below that, and its
+/// limiter only holds it above.
 pub(super) fn limiter(contract: &Contract) -> Term {
-    Term::of(contract.ego().max_speed) - Term::of(contract.speed_error())
+    let ego = contract.ego();
+    let [error, period, late] = [
+        contract.speed_error(),
+        contract.period(),
+        contract.switching(),
+    ]
+    .map(Term::of);
+    let [most, acceleration, go] = [ego.max_speed, ego.acceleration, ego.go].map(Term::of);
+    most - error - error - acceleration * late - go * period
 }
 
 fn rest(rule: impl Fn(&Contract, Reach<Term>, Term) -> Term) -> Claim {

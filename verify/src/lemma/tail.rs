@@ -23,8 +23,7 @@ pub(super) fn lemmas() -> Vec<Lemma> {
                 &clearing(|contract, least, target| {
                     let cap = margin::unlimited::<Term>(contract) * number(0.5);
                     let (time, speed) = least.until(target, Term::of(contract.ego().go), cap);
-                    let late = Term::of(contract.period()) + Term::of(contract.latency());
-                    (time + late, speed)
+                    (time + super::reach::first(contract), speed)
                 }),
             ),
         ),
@@ -76,7 +75,7 @@ fn clearing(rule: fn(&Contract, Reach<Term>, Term) -> (Term, Term)) -> Claim {
         Term::of(contract.ego().go),
     );
     let (clears, _) = rule(&contract, from, target);
-    let late = Term::of(contract.period()) + Term::of(contract.latency());
+    let late = super::reach::first(&contract);
     Claim::new(
         [
             not_negative([time, from.speed]),

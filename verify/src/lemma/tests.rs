@@ -101,14 +101,16 @@ prop_compose! {
         speeds in [0.5_f32..20.0, 0.5..20.0], accelerations in [0.1_f32..10.0, 0.1..10.0, 0.1..10.0],
         [go, b, b_f] in [0.1_f32..1.0, 0.1..1.0, 0.1..1.0],
     ) -> Contract {
+        let brakes = b.max(b_f) * accelerations[2];
+        let launch = accelerations[0].min(accelerations[1]).min(brakes);
         Contract::builder()
             .period(times[0])
             .latency(times[0] * times[1])
             .position_error(errors[0])
             .speed_error(errors[1])
-            .ego_max_speed(speeds[0])
-            .ego_acceleration(accelerations[0])
-            .ego_go(go * accelerations[0])
+            .ego_max_speed(speeds[0].min(speeds[1]))
+            .ego_acceleration(launch)
+            .ego_go(go * launch)
             .ego_braking(b * accelerations[2])
             .other_max_speed(speeds[1])
             .other_acceleration(accelerations[1])
@@ -148,6 +150,11 @@ fn every_number_of_a_contract_has_its_name() {
     assert_ne!(ego, other);
     let mut of = numbers(&Contract::WORST_CASE);
     assert_eq!(value(other, &of), 8.0);
+    let [period, latency] = [contract.shortest_period(), contract.switching()].map(Term::of);
+    assert_eq!(
+        (value(period, &of), value(latency, &of)),
+        (0.1_f32.into(), 0.1_f32.into())
+    );
     of.insert("ego.braking", 2.5);
     assert_eq!(value(ego, &of), 2.5);
 }

@@ -11,16 +11,16 @@ use rayon::prelude::*;
 /// The same on any number of threads. Cost: a tenth of a second. Never panics.
 #[must_use]
 pub fn shortfall(contract: &Contract) -> f64 {
-    let times = contract.period().to_bits()..=60.0_f32.to_bits();
+    let times = contract.shortest_period().to_bits()..=60.0_f32.to_bits();
     let short = |bits| short(contract, f32::from_bits(bits));
     times.into_par_iter().map(short).reduce(|| 0.0, f64::max)
 }
 
-/// The command that is judged lasts one period, the going ones follow. Exact in `f64`, but for the subtraction,
+/// The command that is judged lasts the shortest period, the going ones follow. Exact in `f64`, but for the subtraction,
 /// which is exact where it matters: when the two are close.
 fn short(contract: &Contract, clears: f32) -> f64 {
-    let periods = f64::from(margin::periods(contract, clears)) + 1.0;
-    f64::from(clears) - periods * f64::from(contract.period())
+    let going = f64::from(margin::periods(contract, clears)) * f64::from(contract.period());
+    f64::from(clears) - f64::from(contract.shortest_period()) - going
 }
 
 #[cfg(test)]

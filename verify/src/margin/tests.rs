@@ -5,13 +5,12 @@ use super::rounded::Rounded;
 use super::{bound, shortfall};
 use crate::interval::Interval;
 use cede_controller::Real;
-use cede_controller::Route;
-use cede_controller::geometry::unit;
+use cede_controller::dangerous::unchecked;
 use cede_controller::junction::zone::{FAR, Zone};
-use cede_controller::shield::{Contract, Shield, margin};
-use cede_controller::{Footprint, Point, Pose};
-use cede_controller::{Observation, Vehicle};
-use cede_controller::{Path, Scene};
+use cede_controller::shield::{Contract, Shield, choice, margin};
+use cede_controller::{
+    Class, Footprint, Junction, Observation, PathId, Point, Route, Track, Vehicle,
+};
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -162,7 +161,7 @@ proptest! {
         let (ego, road) = (route(&[(-60.0, 0.0), (60.0, 0.0)]), route(&[(0.0, -60.0), (0.0, 60.0)]));
         let [zone] = zones(&ego, &road)[..] else { panic!("one zone") };
         prop_assume!(s < zone.ego.to && other < zone.other.to);
-        let command = if speed < WORST.ego().max_speed { command } else { command.min(0.0) };
+        let command = command.min(choice::most(&WORST, speed, previous));
         let given = |distance, fifth, target| [speed, previous, command, distance, fifth, target];
         let target = zone.ego.to - s;
         let stops = Predicate::Stops.margin(&WORST, given(zone.ego.from - s, 0.0, 0.0));
@@ -181,7 +180,7 @@ proptest! {
         let road = route(&[(-60.0, 0.0), (60.0, 0.0)]);
         let [zone] = zones(&ego, &road)[..] else { panic!("one zone") };
         prop_assume!(zone.is_lane() && s < zone.ego.from && other < zone.other.to);
-        let command = if speed < WORST.ego().max_speed { command } else { command.min(0.0) };
+        let command = command.min(choice::most(&WORST, speed, previous));
         let given = |distance, fifth, target| [speed, previous, command, distance, fifth, target];
         let stop = zone.ego.from - s;
         let gap = zone.lead.from - (s - other);
@@ -219,16 +218,22 @@ fn route(points: &[(f32, f32)]) -> Route<4> {
     Route::new(points.iter().map(|&(x, y)| Point::new(x, y))).unwrap()
 }
 
-fn scene(ego: &Route<4>, other: &Route<4>) -> Scene<1> {
-    let path = |route| Path {
-        route,
-        footprint: Footprint::PAPER,
-    };
-    Scene::new(path(ego), &[path(other)]).unwrap()
+const EGO: PathId = PathId::new(0);
+const ROAD: PathId = PathId::new(1);
+
+fn junction(ego: &Route<4>, road: &Route<4>) -> Junction<2, 8> {
+    let mut builder = Junction::builder();
+    builder.tolerance(0.0);
+    for route in [ego, road] {
+        builder.path(route, Class::Car, Footprint::PAPER).unwrap();
+    }
+    builder.build().unwrap()
 }
 
-fn zones(ego: &Route<4>, other: &Route<4>) -> Vec<Zone> {
-    scene(ego, other).conflicts()[0].zones().copied().collect()
+fn zones(ego: &Route<4>, road: &Route<4>) -> Vec<Zone> {
+    let junction = junction(ego, road);
+    let conflict = junction.conflict(EGO, ROAD).unwrap();
+    conflict.zones().copied().collect()
 }
 
 fn shield_margin(
@@ -238,19 +243,18 @@ fn shield_margin(
     other: (f32, f32),
     [previous, command]: [f32; 2],
 ) -> f32 {
-    let pose = Pose {
-        position: Point::new(0.0, 0.0),
-        direction: unit(1.0, 0.0),
+    let vehicle = |route: &Route<4>, (s, speed)| Vehicle {
+        s,
+        speed,
+        pose: route.pose(s),
     };
-    let vehicle = |(s, speed)| Vehicle { s, speed, pose };
     let seen = Observation {
-        ego: vehicle(own),
-        others: [Some(vehicle(other))],
+        ego: vehicle(ego, own),
+        tracks: &[Track::on(1, ROAD, vehicle(road, other))],
     };
-    let shield = Shield::<1>::new(WORST);
-    shield
-        .margin(&scene(ego, road), &seen, previous, command)
-        .unwrap()
+    let junction = junction(ego, road);
+    let shield = Shield::<1>::enter(WORST, &junction, EGO).unwrap();
+    shield.margin(&seen, previous, command).unwrap()
 }
 
 #[test]
@@ -290,7 +294,7 @@ fn the_slack_covers_rounding() {
 
 #[test]
 fn no_slack_covers_nothing_and_the_box_is_named() {
-    let contract = Contract::builder().slack(0.0).build().unwrap();
+    let contract = unchecked(Contract::builder().slack(0.0));
     for predicate in Predicate::ALL {
         let bound = bound(predicate, &contract, 5_000);
         assert!(!bound.covered_by(contract.slack()));

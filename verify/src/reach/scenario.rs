@@ -1,6 +1,6 @@
 //! Scenarios as a readable file.
 
-use cede_controller::{ConflictKind, Footprint, Path, Point, RightOfWay, Route, Scene};
+use cede_controller::{Class, ConflictKind, Footprint, Junction, PathId, Point, RightOfWay, Route};
 use cede_formats::property::{Right, Setting};
 use serde::Deserialize;
 
@@ -160,26 +160,42 @@ impl Scenario {
     }
 }
 
-/// The crossing: the ego goes east, the other north; both conflict points 300 m from the routes' starts.
+/// The junction of [`geometry`].
+pub type Crossing = Junction<2, 4>;
+
+/// The ego's path through it.
+pub const EGO: PathId = PathId::new(0);
+/// The other's path.
+pub const OTHER: PathId = PathId::new(1);
+
+/// Half the length (m) of a route of the crossing.
+pub(super) const HALF: f32 = 255.0;
+
+/// The crossing: the ego goes east, the other north; both conflict points are 250 m from the routes' starts, which
+/// are followed exactly. Past the routes' ends nothing is left to show.
 ///
 /// # Panics
 /// Never: the routes are constants that fit.
 #[must_use]
-pub fn geometry(right_of_way: RightOfWay) -> Scene<1> {
-    let route = |from: Point, to: Point| Route::<2>::new([from, to]);
-    let east = route(Point::new(-305.0, 0.0), Point::new(305.0, 0.0));
-    let north = route(Point::new(0.0, -305.0), Point::new(0.0, 305.0));
-    let path = |route| Path {
-        route,
-        footprint: Footprint::PAPER,
-    };
-    let scene = match (&east, &north) {
-        (Ok(east), Ok(north)) => Scene::new(path(east), &[path(north)]).ok(),
-        _ => None,
-    };
-    let Some(mut scene) = scene else {
+pub fn geometry(right_of_way: RightOfWay) -> Crossing {
+    let Some(junction) = crossing(right_of_way) else {
         unreachable!("two straight routes that cross")
     };
-    scene.set_right_of_way(0, right_of_way);
-    scene
+    junction
+}
+
+fn crossing(right_of_way: RightOfWay) -> Option<Crossing> {
+    let east = Route::<2>::new([Point::new(-HALF, 0.0), Point::new(HALF, 0.0)]).ok()?;
+    let north = Route::<2>::new([Point::new(0.0, -HALF), Point::new(0.0, HALF)]).ok()?;
+    let mut builder = Crossing::builder();
+    builder.tolerance(0.0);
+    for route in [&east, &north] {
+        builder.path(route, Class::Car, Footprint::PAPER).ok()?;
+    }
+    match right_of_way {
+        RightOfWay::Ego => builder.right_of_way(EGO, OTHER).ok()?,
+        RightOfWay::Other => builder.right_of_way(OTHER, EGO).ok()?,
+        RightOfWay::Unsettled => {}
+    }
+    builder.build().ok()
 }

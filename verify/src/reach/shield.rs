@@ -6,7 +6,7 @@
 use super::states::States;
 use crate::interval::Interval;
 use cede_controller::Real;
-use cede_controller::shield::choice::{GRID, grid};
+use cede_controller::shield::choice::{self, GRID, grid};
 use cede_controller::shield::reach::Reach;
 use cede_controller::shield::{Contract, margin};
 
@@ -33,6 +33,8 @@ pub(super) const STOPPING: f64 = 1e-4;
 const CLEARING: f64 = 4e-3;
 /// What it may do to a difference of arc lengths (m), with room to spare.
 const PLACE: f64 = 1e-3;
+/// What it may do to the hardest command (m/s²): it is a difference of speeds over a period.
+const COMMAND: f64 = 1e-4;
 /// The shield of a crossing with one other.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shield {
@@ -58,7 +60,7 @@ impl Margins {
 
 impl Shield {
     /// Every command that may come out for a proposal in `wanted`, while one in `previous` is in
-    /// effect. The ego is slower than the contract's limit.
+    /// effect.
     pub(super) fn commands(
         &self,
         states: &States,
@@ -66,8 +68,11 @@ impl Shield {
         wanted: Interval,
     ) -> Commands {
         let ego = self.contract.ego();
-        let (braking, most) = (f64::from(ego.braking), f64::from(ego.acceleration));
-        let wanted = wanted.clamp(-braking, most);
+        let braking = f64::from(ego.braking);
+        let most = choice::most(&self.contract, states.speed, previous);
+        let most = most.wider(COMMAND).clamp(0.0, f64::from(ego.acceleration));
+        let allowed = |a: Interval| Real::min(a, most);
+        let wanted = allowed(wanted.clamp(-braking, f64::INFINITY));
         let verdict = self.margins(states, previous, wanted);
         let mut stops_short = verdict.go.hi < 0.0;
         if verdict.best().lo >= 0.0 {
@@ -78,7 +83,7 @@ impl Shield {
         }
         let command = |i: u8| {
             // The controller's own is rounded to `f32`.
-            let a = grid::<Interval>(&ego, i).wider(1e-6);
+            let a = allowed(grid::<Interval>(&ego, i).wider(1e-6));
             (a, self.margins(states, previous, a))
         };
         let grid: Vec<(Interval, Margins)> = (0..GRID).map(command).collect();
@@ -103,11 +108,11 @@ impl Shield {
             // The plan that was verified last brakes, or goes if it was one to clear the zone.
             add(Interval::point(-braking));
             if !stops_short {
-                add(Interval::point(f64::from(ego.go)));
+                add(allowed(Interval::of(ego.go)));
             }
         }
         Commands {
-            range: range.unwrap_or(Interval::new(-braking, most)),
+            range: range.unwrap_or(Interval::new(-braking, most.hi)),
             stops_short,
         }
     }

@@ -1,11 +1,12 @@
 //! One step of the closed loop, and the tube that many make.
 
-use super::scenario::{Scenario, geometry};
+use super::scenario::{EGO, OTHER, Scenario, geometry};
 use super::shield::{Commands, Shield, Zone, spent};
 use super::states::{Moment, States};
 use crate::interval::Interval;
 use crate::policy::{Response, Subject};
 use cede_controller::Real;
+use cede_controller::RouteConflict;
 use cede_controller::kinematics::STEP;
 use cede_controller::shield::Contract;
 
@@ -43,21 +44,23 @@ impl<'a> Loop<'a> {
     #[must_use]
     pub fn new(subject: &'a Subject<'a>, scenario: &Scenario) -> Self {
         let setting = scenario.setting();
-        let scene = geometry(setting.right_of_way);
-        let conflict = &scene.conflicts()[0];
+        let junction = geometry(setting.right_of_way);
+        let conflict = junction.conflict(EGO, OTHER);
+        let [ego_conflict, other_conflict] =
+            conflict.map_or([0.0; 2], |c| [c.ego_conflict, c.other_conflict]);
         let offset = |from: f32, to: f32, conflict: f32| {
             let at = |x: f32| f64::from(x) - f64::from(conflict);
             Interval::new(at(from), at(to))
         };
-        let mut zones = conflict.zones();
+        let mut zones = conflict.into_iter().flat_map(RouteConflict::zones);
         let zone = zones.next().map_or(
             Zone {
                 ego: Interval::ZERO,
                 other: Interval::ZERO,
             },
             |zone| Zone {
-                ego: offset(zone.ego.from, zone.ego.to, conflict.ego_conflict),
-                other: offset(zone.other.from, zone.other.to, conflict.other_conflict),
+                ego: offset(zone.ego.from, zone.ego.to, ego_conflict),
+                other: offset(zone.other.from, zone.other.to, other_conflict),
             },
         );
         let [least, most] = scenario.other_acceleration;

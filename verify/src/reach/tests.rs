@@ -5,7 +5,7 @@ use cede_controller::kinematics::{State, advance};
 use cede_controller::policy::embedded;
 use cede_controller::policy::weights::Draft;
 use cede_controller::{
-    Contract, Controller, Observation, Part, Point, Policy, Pose, Vehicle, Weights,
+    Contract, Drive, Instant, Observation, Part, Point, Policy, Pose, Track, Vehicle, Weights,
 };
 use cede_formats::property::Right;
 use rand::{RngExt, SeedableRng};
@@ -33,10 +33,12 @@ fn subject(words: &[u32]) -> Subject<'_> {
 
 /// States of the two (distance, speed) as the real controller drives them.
 fn drive(scenario: &Scenario, from: [f32; 4], random: &mut Pcg64, steps: usize) -> Vec<[f64; 4]> {
-    let scene = geometry(scenario.setting().right_of_way);
-    let conflict = scene.conflicts()[0];
+    let junction = geometry(scenario.setting().right_of_way);
+    let conflict = junction.conflict(EGO, OTHER).expect("two paths");
     let policy = Policy::new(embedded::words()).expect("a sound file");
-    let mut controller = Controller::<1>::new(policy, Contract::WORST_CASE, Part::Left);
+    let drive = Drive::new(policy, Contract::WORST_CASE, Part::Left);
+    let mut approach = drive.enter_with_room::<1, _, _, _>(&junction, EGO);
+    let approach = approach.as_mut().expect("a path to enter by");
     let mut ego = State {
         s: conflict.ego_conflict - from[0],
         v: from[1],
@@ -49,14 +51,14 @@ fn drive(scenario: &Scenario, from: [f32; 4], random: &mut Pcg64, steps: usize) 
         s: state.s,
         speed: state.v,
         pose: Pose {
-            position: Point::from(direction.into_inner() * (state.s - 305.0)),
+            position: Point::from(direction.into_inner() * (state.s - super::scenario::HALF)),
             direction,
         },
     };
     let mut states = Vec::new();
     let [least, most] = scenario.other_acceleration;
     let mut push = random.random_range(least..=most);
-    for _ in 0..=steps {
+    for step in 0..=steps {
         let place = |state: State, conflict: f32| f64::from(conflict) - f64::from(state.s);
         states.push([
             place(ego, conflict.ego_conflict),
@@ -66,9 +68,10 @@ fn drive(scenario: &Scenario, from: [f32; 4], random: &mut Pcg64, steps: usize) 
         ]);
         let observation = Observation {
             ego: seen(ego, unit(1.0, 0.0)),
-            others: [Some(seen(other, unit(0.0, 1.0)))],
+            tracks: &[Track::on(7, OTHER, seen(other, unit(0.0, 1.0)))],
         };
-        let command = controller.decide(&scene, &observation).acceleration;
+        let now = Instant::from_millis(100 * step as u64);
+        let command = approach.decide(now, &observation).acceleration;
         ego = advance(ego, command);
         // Now random, now one extreme for a while.
         if random.random::<f32>() < 0.2 {

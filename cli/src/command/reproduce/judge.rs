@@ -6,11 +6,12 @@ use crate::drivers::Contender;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::judge::{ModeName, Plan, UntilName};
+use crate::left_out::LeftOut;
 use cede_controller::{Contract, Policy};
 use cede_data::{Dataset, Encounter};
 use cede_sim::driver::{Baseline, Cede, DriverFactory, PolicyAlone};
 use cede_sim::episode::Until;
-use cede_sim::evaluate::{Drive, Label, Mode, Protocol, Selection, TableRow, evaluate};
+use cede_sim::evaluate::{Drive, Evaluation, Label, Mode, Protocol, Selection, TableRow, evaluate};
 use cede_train::run::Algorithm;
 
 /// No shield, and one with each contract; by their names in the table.
@@ -59,11 +60,13 @@ pub(super) fn policies<'d>(
     trained: &[Trained],
 ) -> Result<Vec<Judged<'d>>, Failure> {
     let mut all: Vec<(Key<'_>, Vec<Drive<'d>>)> = Vec::new();
+    let mut left_out = LeftOut::default();
     for (job, trained) in jobs.iter().zip(trained) {
         for (split, encounters) in &job.judged {
             for (shield, contract) in SHIELDS {
                 interrupt::check()?;
-                let drives = drive(trained.policy, contract, encounters, job.seed);
+                let driven = drive(trained.policy, contract, encounters, job.seed);
+                let drives = left_out.drives(driven);
                 let key = Key {
                     algorithm: job.row.algorithm,
                     seed: job.seed,
@@ -90,7 +93,7 @@ fn drive<'d>(
     contract: Option<Contract>,
     encounters: &[&'d Encounter],
     seed: u64,
-) -> Vec<Drive<'d>> {
+) -> Evaluation<'d> {
     let protocol = Protocol {
         mode: Mode::Joint,
         until: Until::Conflict,

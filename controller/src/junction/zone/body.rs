@@ -93,60 +93,60 @@ impl<'a> Body<'a> {
         self.footprint.length + 2.0 * self.inflation
     }
 
-    /// The motion along piece `i`.
-    pub(super) fn straight(&self, i: usize) -> Option<Motion> {
+    /// What moves on piece `i`, and at the point before it.
+    // Not inlined: it is long, and it is called from two places.
+    #[inline(never)]
+    pub(super) fn stage(&self, i: usize) -> Option<Stage> {
         let piece = self.polyline.piece(i)?;
-        let sweep = |bend: Option<Bend>| match bend {
+        let along = direction(&piece);
+        let next_to = |i: Option<usize>| Some(direction(&self.polyline.piece(i?)?));
+        let before = next_to(i.checked_sub(1)).map(|before| self.bend(before, along));
+        let after = next_to(i.checked_add(1)).map(|after| self.bend(along, after));
+        let small = |bend: &Option<Bend>| match bend {
             Some(bend) if bend.sweep <= SMALL_SWEEP => bend.sweep,
             _ => 0.0,
         };
-        let (before, after) = (sweep(self.bend(i)), sweep(self.bend(i + 1)));
-        Some(Motion {
+        let sweeps = (small(&before), small(&after));
+        let straight = Motion {
             start: piece.start,
             velocity: piece.velocity(),
-            direction: direction(&piece),
+            direction: along,
             arc: piece.from,
             length: piece.to - piece.from,
             first: i == 0,
             last: i + 1 == self.polyline.pieces(),
-            half: self.half(if after > before { after } else { before }),
-        })
-    }
-
-    /// The turns at point `i`, which together have all directions from the piece before to the one after.
-    pub(super) fn turns(&self, i: usize) -> impl Iterator<Item = Motion> {
-        let bend = self.bend(i).filter(|bend| bend.sweep > SMALL_SWEEP);
-        let at = self.polyline.points().get(i).copied();
-        let arc = self.polyline.arc().get(i).copied();
-        let place = at.zip(arc).zip(bend);
-        place
-            .into_iter()
-            .flat_map(move |((at, arc), bend)| self.turns_of(at, arc, bend))
-    }
-
-    fn turns_of(&self, at: Point, arc: f32, bend: Bend) -> impl Iterator<Item = Motion> {
-        let whole = Arc::of(bend.before, bend.after, bend.middle);
-        let arcs = match whole.turns {
-            1 => [Some(whole), None],
-            _ => [
-                Some(Arc::halved(bend.before, bend.middle)),
-                Some(Arc::halved(bend.middle, bend.after)),
-            ],
+            half: self.half(if sweeps.1 > sweeps.0 {
+                sweeps.1
+            } else {
+                sweeps.0
+            }),
         };
-        let body = *self;
-        arcs.into_iter()
-            .flatten()
-            .flat_map(Arc::directions)
-            .map(move |(direction, spread)| Motion {
-                start: at,
-                velocity: Vector::new(0.0, 0.0),
-                direction,
-                arc,
-                length: 0.0,
-                first: false,
-                last: false,
-                half: body.half(body.radius * spread),
-            })
+        let arcs = before.map_or([None; 2], |bend| self.arcs(&bend));
+        Some(Stage { straight, arcs })
+    }
+
+    /// The arcs of directions that a bend is made of; none, if it is small.
+    fn arcs(&self, bend: &Bend) -> [Option<Arc>; 2] {
+        if bend.sweep <= SMALL_SWEEP {
+            return [None; 2];
+        }
+        let arc = |from, to, middle| {
+            let mut arc = Arc::of(from, to, middle);
+            arc.half = self.half(self.radius * arc.spread);
+            arc
+        };
+        let Bend {
+            before,
+            middle,
+            after,
+            ..
+        } = *bend;
+        let whole = arc(before, after, middle);
+        if whole.turns == 1 {
+            return [Some(whole), None];
+        }
+        [(before, middle), (middle, after)]
+            .map(|(from, to)| Some(arc(from, to, self::middle(from, to))))
     }
 
     fn half(&self, sweep: f32) -> (f32, f32) {
@@ -157,17 +157,15 @@ impl<'a> Body<'a> {
         )
     }
 
-    /// The change of direction at point `i`; `None` at the ends.
-    fn bend(&self, i: usize) -> Option<Bend> {
-        let before = direction(&self.polyline.piece(i.checked_sub(1)?)?);
-        let after = direction(&self.polyline.piece(i)?);
+    /// The change from one direction to another.
+    fn bend(&self, before: Vector, after: Vector) -> Bend {
         let middle = middle(before, after);
-        Some(Bend {
+        Bend {
             before,
             middle,
             after,
             sweep: self.radius * length(&(middle - before)),
-        })
+        }
     }
 }
 
@@ -180,13 +178,59 @@ struct Arc {
     turns: u8,
     /// How far a direction of one of these turns is from the turn's middle, at most.
     spread: f32,
+    /// Half the footprint's length and width, inflated.
+    half: (f32, f32),
+    middle: Vector,
+}
+
+/// What moves on one piece of a polyline and at the point before it.
+#[derive(Clone, Copy)]
+pub(super) struct Stage {
+    straight: Motion,
+    arcs: [Option<Arc>; 2],
+}
+
+impl Stage {
+    /// The turns at the point, which together have all directions from the piece before to this one.
+    pub(super) fn turns(&self) -> impl Iterator<Item = Motion> {
+        let straight = self.straight;
+        self.arcs.into_iter().flatten().flat_map(move |arc| {
+            arc.directions().map(move |direction| Motion {
+                velocity: Vector::new(0.0, 0.0),
+                direction,
+                length: 0.0,
+                first: false,
+                last: false,
+                half: arc.half,
+                ..straight
+            })
+        })
+    }
+
+    /// Whether some turn at the point may touch something on a piece of another route.
+    pub(super) fn turns_near(&self, other: &Self) -> bool {
+        if self.arcs[0].is_none() {
+            return false;
+        }
+        let between = self.straight.start - other.straight.start;
+        let reach = other.straight.length + self.size() + other.size();
+        between.dot(&between) <= reach * reach
+    }
+
+    /// No part of any footprint is farther (m) than this from the piece.
+    fn size(&self) -> f32 {
+        let size = |half: (f32, f32)| half.0 + half.1;
+        let turned = self.arcs.iter().flatten().map(|arc| size(arc.half));
+        turned.fold(size(self.straight.half), |a, b| if b > a { b } else { a })
+    }
+
+    /// The motion along the piece.
+    pub(super) const fn straight(&self) -> &Motion {
+        &self.straight
+    }
 }
 
 impl Arc {
-    fn halved(from: Vector, to: Vector) -> Self {
-        Self::of(from, to, middle(from, to))
-    }
-
     /// Points of the chord at distance x have directions at distance x/m at most, m being the chord's
     /// distance from the origin.
     fn of(from: Vector, to: Vector, middle: Vector) -> Self {
@@ -205,15 +249,20 @@ impl Arc {
             to,
             turns,
             spread,
+            half: (0.0, 0.0),
+            middle,
         }
     }
 
-    /// The middle direction of each turn, and how far its directions are from that.
-    fn directions(self) -> impl Iterator<Item = (Vector, f32)> {
+    /// The middle direction of each turn.
+    fn directions(self) -> impl Iterator<Item = Vector> {
         (0..self.turns).map(move |i| {
+            if self.turns == 1 {
+                return self.middle;
+            }
             let along = (f32::from(i) + 0.5) / f32::from(self.turns);
             let point = self.from + (self.to - self.from) * along;
-            (point * (1.0 / length(&point)), self.spread)
+            point * (1.0 / length(&point))
         })
     }
 }
@@ -243,4 +292,45 @@ pub(crate) fn sharp_kink(polyline: Polyline<'_>) -> Option<(usize, f32)> {
         let (along, across) = (before.dot(&after), before.perp(&after).abs());
         (along < SHARP).then(|| (i, libm::atan2f(across, along).to_degrees()))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::junction::route::Route;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Whatever direction a vehicle has at a point, some motion there covers all of its corners.
+        #[test]
+        fn every_direction_at_a_point_is_covered_by_a_motion(
+            turn in prop_oneof![-90.0_f64..90.0, -6.0_f64..6.0, -1.3_f64..1.3],
+            share in 0.0_f64..1.0,
+            length in 0.5_f32..12.0,
+            width in 0.5_f32..3.0,
+        ) {
+            let (sin, cos) = turn.to_radians().sin_cos();
+            let points = [(-20.0, 0.0), (0.0, 0.0), (20.0 * cos as f32, 20.0 * sin as f32)];
+            let route = Route::<3>::new(points.map(|(x, y)| Point::new(x, y))).unwrap();
+            let body = Body::new(route.polyline(), Footprint { length, width }, 0.0);
+            let before = *body.stage(0).unwrap().straight();
+            let at: std::vec::Vec<_> = body.stage(1).unwrap().turns().collect();
+            let after = *body.stage(1).unwrap().straight();
+            let (sin, cos) = (share * turn.to_radians()).sin_cos();
+            let corners = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)].map(|(x, y)| {
+                let (l, w) = (0.5 * x * f64::from(length), 0.5 * y * f64::from(width));
+                (l * cos - w * sin, l * sin + w * cos)
+            });
+            let covers = |motion: &Motion| {
+                let (x, y) = (f64::from(motion.direction.x), f64::from(motion.direction.y));
+                // Without what is there for rounding, all but 0.1 mm.
+                let spare = f64::from(INFLATION) - 1.0e-4;
+                corners.iter().all(|(p, q)| {
+                    (p * x + q * y).abs() <= f64::from(motion.half.0) - spare
+                        && (q * x - p * y).abs() <= f64::from(motion.half.1) - spare
+                })
+            };
+            prop_assert!(at.iter().chain([&before, &after]).any(covers));
+        }
+    }
 }

@@ -12,6 +12,43 @@ const PARALLEL: f32 = 0.866;
 /// A polygon in the (s, t) plane, both counted from the motions' starts.
 type Polygon = Vec<Point, 12>;
 
+/// Where two motions can be at most.
+pub(super) struct Cell {
+    pub(super) ego: Span,
+    pub(super) other: Span,
+    pub(super) lead: Span,
+    /// The two may point the same way.
+    pub(super) parallel: bool,
+    /// An end of a route is in it.
+    pub(super) end: bool,
+}
+
+impl Cell {
+    pub(super) fn of(a: &Motion, b: &Motion) -> Self {
+        let span = |motion: &Motion| Span {
+            from: motion.arc,
+            to: motion.arc + motion.length,
+        };
+        let (ego, other) = (span(a), span(b));
+        Self {
+            ego,
+            other,
+            lead: Span {
+                from: ego.from - other.to - INFLATION,
+                to: ego.to - other.from + INFLATION,
+            },
+            parallel: parallel(a, b),
+            end: a.first || a.last || b.first || b.last,
+        }
+    }
+}
+
+/// Whether the vehicles point the same way. Turns do not count: they are in no lane.
+fn parallel(a: &Motion, b: &Motion) -> bool {
+    let turn = a.length == 0.0 || b.length == 0.0;
+    !turn && a.direction.dot(&b.direction) > PARALLEL
+}
+
 /// What of the two motions is occupied.
 // Not inlined, like `cut`: a microcontroller has no stack for all of their polygons at once.
 #[inline(never)]
@@ -21,19 +58,22 @@ pub(super) fn meet(a: &Motion, b: &Motion) -> Option<Patch> {
     if between.dot(&between) > reach * reach {
         return None;
     }
-    let limits = axes(a, b).map(|(axis, radius)| Limit {
-        radius,
-        offset: axis.dot(&between),
-        along: axis.dot(&a.velocity),
-        other_along: -axis.dot(&b.velocity),
-    });
-    let ranges = limits.map(|limit| limit.range(a.length, b.length));
-    let mut bounded = limits.iter().zip(ranges);
-    if bounded.any(|(limit, range)| range.from > limit.radius || range.to < -limit.radius) {
-        return None;
+    let mut limits = [Limit::default(); 4];
+    for (limit, (axis, radius)) in limits.iter_mut().zip(axes(a, b)) {
+        *limit = Limit {
+            radius,
+            offset: axis.dot(&between),
+            along: axis.dot(&a.velocity),
+            other_along: -axis.dot(&b.velocity),
+        };
+        let range = limit.range(a.length, b.length);
+        if range.from > radius || range.to < -radius {
+            return None;
+        }
     }
     let mut polygon = rectangle(a.length, b.length);
-    for (limit, range) in limits.iter().zip(ranges) {
+    for limit in &limits {
+        let range = limit.range(a.length, b.length);
         if range.to > limit.radius {
             cut(&mut polygon, |p| limit.radius - limit.at(p));
         }
@@ -45,7 +85,7 @@ pub(super) fn meet(a: &Motion, b: &Motion) -> Option<Patch> {
 }
 
 /// The rectangles overlap along one axis while |offset + along s + other_along t| ≤ radius.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Limit {
     radius: f32,
     offset: f32,
@@ -70,22 +110,18 @@ impl Limit {
 }
 
 /// The four directions in which two rectangles can be apart, each with the distance of their
-/// centres from which they are.
+/// centres from which they are. Across comes first: most segments near each other are lanes side by side.
 fn axes(a: &Motion, b: &Motion) -> [(Vector, f32); 4] {
     let normal = |v: Vector| Vector::new(-v.y, v.x);
-    let radius = |half: (f32, f32), direction: Vector, axis: Vector| {
-        half.0 * axis.dot(&direction).abs() + half.1 * axis.perp(&direction).abs()
-    };
+    let cos = a.direction.dot(&b.direction).abs();
+    let sin = a.direction.perp(&b.direction).abs();
+    let ((l, w), (other_l, other_w)) = (a.half, b.half);
     [
-        a.direction,
-        normal(a.direction),
-        b.direction,
-        normal(b.direction),
+        (normal(a.direction), w + other_l * sin + other_w * cos),
+        (normal(b.direction), other_w + l * sin + w * cos),
+        (a.direction, l + other_l * cos + other_w * sin),
+        (b.direction, other_l + l * cos + w * sin),
     ]
-    .map(|axis| {
-        let radius = radius(a.half, a.direction, axis) + radius(b.half, b.direction, axis);
-        (axis, radius)
-    })
 }
 
 fn rectangle(width: f32, height: f32) -> Polygon {
@@ -136,8 +172,7 @@ fn bounds(a: &Motion, b: &Motion, polygon: &Polygon) -> Option<Patch> {
     let starts = (a.first && ego.from <= TOUCHING) || (b.first && other.from <= TOUCHING);
     let ends =
         (a.last && ego.to >= a.length - TOUCHING) || (b.last && other.to >= b.length - TOUCHING);
-    let turning = a.length == 0.0 || b.length == 0.0;
-    let parallel = !turning && a.direction.dot(&b.direction) > PARALLEL;
+    let parallel = parallel(a, b);
     let offset = a.arc - b.arc;
     Some(Patch {
         ego: placed(ego, a),

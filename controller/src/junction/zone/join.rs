@@ -1,5 +1,6 @@
 //! The occupied polygons that hang together become one zone.
 
+use super::clip::Cell;
 use super::{FAR, MAX_ZONES, Span, Zone};
 use crate::junction::conflict::ConflictKind;
 
@@ -25,6 +26,16 @@ impl Patch {
         self.ego.touches(other.ego) && self.other.touches(other.other)
     }
 
+    /// Whether nothing that is occupied in the cell would change the patch.
+    fn covers(&self, cell: &Cell) -> bool {
+        let holds = |outer: Span, inner: Span| outer.from <= inner.from && inner.to <= outer.to;
+        !cell.end
+            && holds(self.ego, cell.ego)
+            && holds(self.other, cell.other)
+            && holds(self.lead, cell.lead)
+            && (!cell.parallel || self.parallel.is_some_and(|known| holds(known, cell.ego)))
+    }
+
     fn absorb(&mut self, other: &Self) {
         self.ego = self.ego.hull(other.ego);
         self.other = self.other.hull(other.other);
@@ -37,7 +48,8 @@ impl Patch {
         self.ends |= other.ends;
     }
 
-    pub(super) fn zone(&self) -> Zone {
+    /// The zone of vehicles that are `lengths` (m) long together.
+    pub(super) fn zone(&self, lengths: f32) -> Zone {
         let lane = self.parallel.is_some_and(|p| p.to - p.from >= LANE);
         // A shared lane goes on past the end of the shorter route, for both.
         let end = |interval: Span| Span {
@@ -47,7 +59,11 @@ impl Patch {
         Zone {
             ego: end(self.ego),
             other: end(self.other),
-            lead: self.lead,
+            lead: if lane && (self.starts || self.ends) {
+                widened(self.lead, lengths)
+            } else {
+                self.lead
+            },
             kind: match (lane, self.starts) {
                 (true, true) => ConflictKind::Following,
                 (true, false) => ConflictKind::Merging,
@@ -55,6 +71,22 @@ impl Patch {
             },
         }
     }
+}
+
+/// A band at least `width` wide, on whichever side it is cut off. A lane that a route's end cuts off goes on beyond it.
+fn widened(band: Span, width: f32) -> Span {
+    band.hull(Span {
+        from: band.to - width,
+        to: band.from + width,
+    })
+}
+
+/// Whether nothing that is occupied in the cell would change the patches: one covers it, and no other
+/// one touches it.
+pub(super) fn covered(patches: &[Option<Patch>; MAX_ZONES], cell: &Cell) -> bool {
+    let touches = |patch: &&Patch| patch.ego.touches(cell.ego) && patch.other.touches(cell.other);
+    let mut touching = patches.iter().flatten().filter(touches);
+    touching.next().is_some_and(|patch| patch.covers(cell)) && touching.next().is_none()
 }
 
 /// Adds a patch, or widens those that it touches: what hangs together ends up in one.

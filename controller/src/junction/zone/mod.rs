@@ -14,13 +14,16 @@
 
 mod body;
 mod clip;
+#[cfg(test)]
+mod cover;
 mod join;
 mod near;
 
 use crate::junction::conflict::ConflictKind;
 pub(crate) use body::{Body, sharp_kink};
-use clip::meet;
-use join::{Patch, insert};
+use body::{Motion, Stage};
+use clip::{Cell, meet};
+use join::{Patch, covered, insert};
 use near::near_pieces;
 
 /// Most zones of one pair of routes; if the routes meet more often, the last zone covers the rest.
@@ -128,19 +131,18 @@ pub(crate) type Zones = [Option<Zone>; MAX_ZONES];
 /// 12 corners for each at which the footprints touch.
 pub(crate) fn zones(ego: &Body<'_>, other: &Body<'_>) -> Zones {
     let mut patches = [None; MAX_ZONES];
-    near_pieces(ego, other, |i, j| {
-        meet_pieces(&mut patches, (ego, i), (other, j))
-    });
-    patches.map(|patch| patch.map(|patch| patch.zone()))
+    near_pieces(ego, other, |a, b| meet_stages(&mut patches, a, b));
+    let lengths = ego.length() + other.length();
+    patches.map(|patch| patch.map(|patch| patch.zone(lengths)))
 }
 
 /// The zone of two vehicles on one route: a lane throughout, with a band that is the same for both.
 pub(crate) fn zone_with_itself(body: &Body<'_>) -> Zone {
     let mut patches = [None; MAX_ZONES];
-    near_pieces(body, body, |i, j| {
-        // The other half is the same, mirrored.
-        if i <= j {
-            meet_pieces(&mut patches, (body, i), (body, j));
+    // The half in which the ego is ahead is the same, mirrored.
+    near_pieces(body, body, |a, b| {
+        if a.straight().arc <= b.straight().arc {
+            meet_stages(&mut patches, a, b);
         }
     });
     let apart = body.length() + INFLATION;
@@ -171,17 +173,23 @@ pub(crate) fn zone_with_itself(body: &Body<'_>) -> Zone {
     }
 }
 
-/// Adds what is occupied on one segment of each route, or in the turn before it.
-fn meet_pieces(
-    patches: &mut [Option<Patch>; MAX_ZONES],
-    (ego, i): (&Body<'_>, usize),
-    (other, j): (&Body<'_>, usize),
-) {
-    for a in ego.straight(i).into_iter().chain(ego.turns(i)) {
-        for b in other.straight(j).into_iter().chain(other.turns(j)) {
-            if let Some(patch) = meet(&a, &b) {
-                insert(patches, patch);
-            }
+/// Adds what is occupied on one segment of each route, and in the turns before it.
+fn meet_stages(patches: &mut [Option<Patch>; MAX_ZONES], a: &Stage, b: &Stage) {
+    let mut add = |a: &Motion, b: &Motion| {
+        if !covered(patches, &Cell::of(a, b))
+            && let Some(patch) = meet(a, b)
+        {
+            insert(patches, patch);
+        }
+    };
+    add(a.straight(), b.straight());
+    if b.turns_near(a) {
+        b.turns().for_each(|turn| add(a.straight(), &turn));
+    }
+    if a.turns_near(b) {
+        for turn in a.turns() {
+            add(&turn, b.straight());
+            b.turns().for_each(|other| add(&turn, &other));
         }
     }
 }

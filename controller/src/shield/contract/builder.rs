@@ -36,13 +36,13 @@ impl ContractBuilder {
         self
     }
 
-    /// A command takes effect within this time in s, in [0, `period` − 3 `jitter`].
+    /// A command takes effect within this time in s, in [0, `period` − 6 `jitter`].
     pub const fn latency(mut self, latency: f32) -> Self {
         self.numbers.latency = latency;
         self
     }
 
-    /// How far (s) a call may be from the grid of periods, either way, in [0, `period`/4].
+    /// How far (s) a call may be from the grid of periods, either way, in [0, `period`/8].
     pub const fn jitter(mut self, jitter: f32) -> Self {
         self.numbers.jitter = jitter;
         self

@@ -102,7 +102,7 @@ const fn first(demands: &[Demand]) -> Option<ContractError> {
 
 const fn everywhere(contract: &Contract) -> [Demand; 15] {
     let (ego, other, follower) = (contract.ego, contract.other, contract.follower);
-    let late = ": a command takes effect before the next one is given, at most two jitters early and one late";
+    let late = ": a command takes effect before the next one is given, each up to two jitters early or late";
     // Whoever enters a lane ahead of another may do so sooner, and then slower, than planned.
     let keeps = ": it accelerates no harder than other.acceleration, and no harder than it or its follower brakes";
     let fastest = ": it is no faster than the others, whom other.max_speed bounds";
@@ -120,13 +120,13 @@ const fn everywhere(contract: &Contract) -> [Demand; 15] {
         (
             "jitter",
             contract.jitter,
-            from(0.0, contract.period / 4.0),
+            from(0.0, contract.period / 8.0),
             "",
         ),
         (
             "latency",
             contract.latency,
-            from(0.0, contract.period - 3.0 * contract.jitter),
+            from(0.0, contract.period - 6.0 * contract.jitter),
             late,
         ),
         ("position_error", contract.position_error, tolerance, ""),

@@ -185,29 +185,29 @@ impl Contract {
         self.period
     }
 
-    /// A command takes effect within this time in s, in [0, `period` − 3 `jitter`]; until then the one before it does.
+    /// A command takes effect within this time in s, in [0, `period` − 6 `jitter`]; until then the one before it does.
     #[must_use]
     pub const fn latency(&self) -> f32 {
         self.latency
     }
 
-    /// How far (s) a call may be from the grid of periods, either way, in [0, `period`/4].
+    /// How far (s) a call may be from the grid of periods, either way, in [0, `period`/8].
     #[must_use]
     pub const fn jitter(&self) -> f32 {
         self.jitter
     }
 
     /// How long (s) it is uncertain which of two commands is in effect, counted from the moment at which the second may
-    /// be given at the earliest.
+    /// be given at the earliest: two calls are up to two jitters nearer or farther than they should be.
     #[must_use]
     pub const fn switching(&self) -> f32 {
-        self.latency + 2.0 * self.jitter
+        self.latency + 4.0 * self.jitter
     }
 
     /// The least time (s) from a call that is on time to the next one.
     #[must_use]
     pub const fn shortest_period(&self) -> f32 {
-        self.period - self.jitter
+        self.period - 2.0 * self.jitter
     }
 
     /// Largest error of a sensed arc length in m, the ego's or another's, in [0, 10].
@@ -295,7 +295,7 @@ mod tests {
         begins(worst(|c| c.slack = 0.0), "slack = 0 is outside [0.01, 10]");
         begins(
             worst(|c| c.jitter = 0.01),
-            "latency = 0.1 is outside [0, 0.07",
+            "latency = 0.1 is outside [0, 0.04",
         );
         begins(
             worst(|c| c.ego.acceleration = 3.5),

@@ -1,7 +1,7 @@
-//! The golden file: scenes, what is observed in them, and what the host decides, as 32-bit words.
+//! The golden file: junctions, what is observed on the way through them, and what the host decides, as 32-bit words.
 //!
-//! Scene after scene: the number of others and of steps, a route for each vehicle with the ego's first
-//! ([`ROUTE`] words each), then for each step the observation ([`QUESTION`] words) and the decision
+//! Junction after junction: the number of others and of steps, a route for each vehicle with the ego's first
+//! ([`ROUTE`] words each), then for each step the question ([`QUESTION`] words) and the decision
 //! ([`ANSWER`] words). Host and image read it by this code. Numbers are bit patterns, so that what is
 //! no number is asked about as well.
 #![no_std]
@@ -13,11 +13,14 @@ pub use answer::{ANSWER, answer};
 
 use cede_controller::geometry::unit;
 use cede_controller::{
-    Contract, Controller, Footprint, Observation, Part, Path, Point, Policy, Pose, RightOfWay,
-    Route, RouteError, Scene, SceneError, Vehicle,
+    Approach, Class, Contract, Drive, EnterError, Footprint, Instant, JunctionError, Observation,
+    Part, PathId, Point, Policy, Pose, Route, RouteError, Track, Vehicle,
 };
 
-/// Others in a scene, at most.
+/// The paths of the ego and of each other; nobody but the ego is driven.
+pub type Junction = cede_controller::Junction<{ 1 + OTHERS }, { (1 + OTHERS) * POINTS }, 1>;
+
+/// Others at a junction, at most.
 pub const OTHERS: usize = 8;
 /// Points of a route, at most.
 pub const POINTS: usize = 8;
@@ -26,10 +29,30 @@ pub const POINTS: usize = 8;
 pub const ROUTE: usize = 4 + 2 * POINTS;
 /// Words of a vehicle: whether it is there, s, speed, x, y, and the direction's x and y.
 pub const VEHICLE: usize = 7;
-/// Words of an observation: the ego and the others.
-pub const QUESTION: usize = VEHICLE * (1 + OTHERS);
+/// Words of a question: milliseconds of the clock, the ego and the others.
+pub const QUESTION: usize = 1 + VEHICLE * (1 + OTHERS);
 
-/// A scene of the golden file.
+/// Why there is no junction.
+#[derive(Clone, Copy, Debug)]
+pub enum Wrong {
+    /// A polyline is no route.
+    Route(RouteError),
+    /// The routes make no junction.
+    Junction(JunctionError),
+}
+
+impl core::fmt::Display for Wrong {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Route(error) => error.fmt(f),
+            Self::Junction(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for Wrong {}
+
+/// A junction of the golden file.
 #[derive(Clone, Copy, Debug)]
 pub struct Golden<'a> {
     routes: &'a [[u32; ROUTE]],
@@ -38,7 +61,7 @@ pub struct Golden<'a> {
 }
 
 impl<'a> Golden<'a> {
-    /// Takes a scene from the front of `words`; `None` at their end.
+    /// Takes a junction from the front of `words`; `None` at their end.
     pub fn next(words: &mut &'a [u32]) -> Option<Self> {
         let (&[others, steps], rest) = words.split_first_chunk()?;
         let (routes, rest) = rest.split_at_checked((usize::try_from(others).ok()? + 1) * ROUTE)?;
@@ -51,47 +74,43 @@ impl<'a> Golden<'a> {
         })
     }
 
-    /// The scene, with nobody's right of way: see [`Golden::settle`]. It is the result of one call, so that
-    /// it is made where it is to be and needs its room once.
+    /// The junction.
     ///
     /// # Errors
     /// If the routes make none.
-    pub fn scene(&self) -> Result<Scene<OTHERS>, SceneError> {
-        let Some((mine, theirs)) = self.routes.split_first() else {
-            return Err(SceneError::Others);
-        };
-        let Ok(route) = &route(mine) else {
-            return Err(SceneError::Others);
-        };
-        let footprint = footprint(mine);
-        let ego = Path { route, footprint };
-        let others = theirs.iter().map_while(other);
-        Scene::gather(ego, others)
-    }
-
-    /// Says in `scene` who goes first.
-    pub fn settle(&self, scene: &mut Scene<OTHERS>) {
-        for (i, [_, _, right_of_way, ..]) in self.routes.iter().skip(1).enumerate() {
-            let right_of_way = match right_of_way {
-                1 => RightOfWay::Ego,
-                2 => RightOfWay::Other,
-                _ => RightOfWay::Unsettled,
+    // Not inlined, so that it fills the caller's junction and no copy of it.
+    #[inline(never)]
+    pub fn junction(&self) -> Result<Junction, Wrong> {
+        let mut builder = Junction::builder();
+        for words in self.routes {
+            let route = route(words).map_err(Wrong::Route)?;
+            let path = builder.path(&route, Class::Car, footprint(words));
+            let path = path.map_err(Wrong::Junction)?;
+            let settled = match words {
+                [_, _, 1, ..] => builder.right_of_way(EGO, path),
+                [_, _, 2, ..] => builder.right_of_way(path, EGO),
+                _ => Ok(()),
             };
-            scene.set_right_of_way(i, right_of_way);
+            // The ego has no right of way over itself.
+            let _ = settled;
         }
+        builder.build().map_err(Wrong::Junction)
     }
 }
 
-/// The controller that is asked: within the worst-case contract, as the left-turner.
-#[must_use]
-#[inline(never)]
-pub fn controller<'w>(policy: &Policy<'w>) -> Controller<'w, OTHERS> {
-    Controller::new(*policy, Contract::WORST_CASE, Part::Left)
-}
+/// The ego's path.
+pub const EGO: PathId = PathId::new(0);
 
-fn other(words: &[u32; ROUTE]) -> Option<(Route<POINTS>, Footprint)> {
-    let route = route(words).ok()?;
-    Some((route, footprint(words)))
+/// The approach that is asked: within the worst-case contract, as the left-turner.
+///
+/// # Errors
+/// If the ego cannot enter.
+#[inline(never)]
+pub fn approach<'j, 'w>(
+    policy: &Policy<'w>,
+    junction: &'j Junction,
+) -> Result<Approach<'j, 'w>, EnterError> {
+    Drive::new(*policy, Contract::WORST_CASE, Part::Left).enter(junction, EGO)
 }
 
 #[inline(never)]
@@ -109,20 +128,58 @@ fn footprint([length, width, ..]: &[u32; ROUTE]) -> Footprint {
     }
 }
 
-/// What the words of a step observe. Not inlined: it would take its room twice.
-#[must_use]
-#[inline(never)]
-pub fn observation(words: &[u32; QUESTION]) -> Observation<OTHERS> {
-    let nobody = [0; VEHICLE];
-    let (ego, others) = words.as_chunks().0.split_first().unwrap_or((&nobody, &[]));
-    let mut observation = Observation {
-        ego: vehicle(ego),
-        others: [None; OTHERS],
-    };
-    for (place, words) in observation.others.iter_mut().zip(others) {
-        *place = (words[0] != 0).then(|| vehicle(words));
+/// What is asked in one step.
+#[derive(Clone, Copy, Debug)]
+pub struct Question {
+    /// When.
+    pub now: Instant,
+    ego: Vehicle,
+    tracks: [Track; OTHERS],
+    /// How many of them there are.
+    count: usize,
+}
+
+impl Question {
+    /// What the words of a step ask. Not inlined: it would take its room twice.
+    #[must_use]
+    #[inline(never)]
+    pub fn new([millis, vehicles @ ..]: &[u32; QUESTION]) -> Self {
+        let nobody = [0; VEHICLE];
+        let (ego, others) = vehicles
+            .as_chunks()
+            .0
+            .split_first()
+            .unwrap_or((&nobody, &[]));
+        let ego = vehicle(ego);
+        let mut question = Self {
+            now: Instant::from_millis(u64::from(*millis)),
+            ego,
+            tracks: [Track::on(0, EGO, ego); OTHERS],
+            count: 0,
+        };
+        let mut places = question.tracks.iter_mut();
+        for (number, words) in (1_u8..).zip(others) {
+            if words[0] == 0 {
+                continue;
+            }
+            if let Some(place) = places.next() {
+                // The numbers of tracks are not those of paths.
+                let track = 1000 - 7 * u16::from(number);
+                *place = Track::on(track, PathId::new(number), vehicle(words));
+                question.count += 1;
+            }
+        }
+        question
     }
-    observation
+
+    /// What is observed.
+    #[must_use]
+    pub fn observation(&self) -> Observation<'_> {
+        Observation {
+            ego: self.ego,
+            tracks: self.tracks.get(..self.count).unwrap_or(&[]),
+        }
+    }
 }
 
 fn vehicle(words: &[u32; VEHICLE]) -> Vehicle {

@@ -1,19 +1,19 @@
 //! Writes the golden file: `cede-golden FOLDER`. The embedded policy drives.
 //!
 //! Everything else comes from one fixed generator: vehicles that start at random and drive as they please,
-//! within the contract for most of the time; now and then one vanishes, jumps, or is no number at all.
+//! within the contract for most of the time; now and then one vanishes, jumps, or is no number at all, and a call is late.
 
 mod random;
 mod traffic;
 
 use cede_controller::Policy;
-use cede_golden::{Golden, answer, controller, observation};
+use cede_golden::{Golden, Question, answer, approach};
 use random::Random;
 use std::io::{Error, Result};
 use std::path::Path;
 use traffic::Traffic;
 
-/// Scenes, with 1 to 8 others in turn, and their steps of 0.1 s.
+/// Junctions, with 1 to 8 others in turn, and their steps of 0.1 s.
 const SCENES: usize = 24;
 const STEPS: usize = 60;
 
@@ -34,21 +34,21 @@ fn write(path: &Path, words: &[u32]) -> Result<()> {
     std::fs::write(path, bytes)
 }
 
-/// A scene with `others` others, and what `policy` decides in it.
+/// A junction with `others` others, and what `policy` decides in it.
 fn scene(policy: &Policy<'_>, random: &mut Random, others: usize) -> Result<Vec<u32>> {
     let mut traffic = Traffic::new(random, others);
     let mut words = vec![others as u32, 0];
     words.extend(traffic.routes());
     let golden = Golden::next(&mut words.as_slice());
-    let golden = golden.ok_or_else(|| Error::other("no scene at the end"))?;
-    let mut scene = golden.scene().map_err(Error::other)?;
-    golden.settle(&mut scene);
-    let mut controller = controller(policy);
+    let golden = golden.ok_or_else(|| Error::other("no junction at the end"))?;
+    let junction = golden.junction().map_err(Error::other)?;
+    let mut approach = approach(policy, &junction).map_err(Error::other)?;
     words[1] = STEPS as u32;
     for _ in 0..STEPS {
-        let question = traffic.observe(random);
-        let decision = controller.decide(&scene, &observation(&question));
-        words.extend(question);
+        let words_of_step = traffic.observe(random);
+        let question = Question::new(&words_of_step);
+        let decision = approach.decide(question.now, &question.observation());
+        words.extend(words_of_step);
         words.extend(answer(&decision));
         traffic.advance(random, decision.acceleration);
     }

@@ -1,8 +1,8 @@
-//! Vehicles on straight and bent routes through one intersection.
+//! Vehicles on straight and bent routes through one junction.
 
 use crate::random::Random;
 use cede_controller::kinematics::STEP;
-use cede_controller::{Contract, Point, Route};
+use cede_controller::{Class, Contract, Footprint, Junction, Point, Route};
 use cede_golden::{POINTS, QUESTION, ROUTE, VEHICLE};
 
 /// What the others may do by the worst-case contract, in m/s² and m/s.
@@ -10,7 +10,10 @@ const ACCELERATION: f32 = Contract::WORST_CASE.other().acceleration;
 const SPEED: f32 = Contract::WORST_CASE.other().max_speed;
 
 /// The ego and the others.
-pub(crate) struct Traffic(Vec<Vehicle>);
+pub(crate) struct Traffic {
+    vehicles: Vec<Vehicle>,
+    millis: u32,
+}
 
 struct Vehicle {
     points: Vec<Point>,
@@ -24,21 +27,25 @@ struct Vehicle {
 
 impl Traffic {
     pub(crate) fn new(random: &mut Random, others: usize) -> Self {
-        Self((0..=others).map(|_| Vehicle::new(random)).collect())
+        Self {
+            vehicles: (0..=others).map(|_| Vehicle::new(random)).collect(),
+            millis: 1_000,
+        }
     }
 
     pub(crate) fn routes(&self) -> impl Iterator<Item = u32> + '_ {
-        self.0.iter().flat_map(Vehicle::words)
+        self.vehicles.iter().flat_map(Vehicle::words)
     }
 
     /// What is seen; now and then something that cannot be.
     pub(crate) fn observe(&self, random: &mut Random) -> [u32; QUESTION] {
         let mut question = [0; QUESTION];
-        for (words, vehicle) in question
+        question[0] = self.millis;
+        for (words, vehicle) in question[1..]
             .as_chunks_mut::<VEHICLE>()
             .0
             .iter_mut()
-            .zip(&self.0)
+            .zip(&self.vehicles)
         {
             *words = vehicle.seen();
             if random.once_in(100) {
@@ -51,7 +58,8 @@ impl Traffic {
 
     /// The ego does as it is told, the others as they please.
     pub(crate) fn advance(&mut self, random: &mut Random, acceleration: f32) {
-        for (i, vehicle) in self.0.iter_mut().enumerate() {
+        self.millis += if random.once_in(50) { 230 } else { 100 };
+        for (i, vehicle) in self.vehicles.iter_mut().enumerate() {
             if i == 0 {
                 vehicle.acceleration = acceleration;
             } else {
@@ -65,19 +73,12 @@ impl Traffic {
 impl Vehicle {
     /// In from one side, a bend in the middle, out to another.
     fn new(random: &mut Random) -> Self {
-        let mut arm = |radius: f32| {
-            let angle = random.within(std::f32::consts::PI);
-            Point::new(radius * angle.cos(), radius * angle.sin())
+        let points = loop {
+            let points = points(random);
+            if drivable(&points) {
+                break points;
+            }
         };
-        let (from, to) = (arm(45.0), arm(45.0));
-        let (entry, exit) = (from * 0.15, to * 0.15);
-        let points = vec![
-            from,
-            entry,
-            Point::from((entry.coords + exit.coords) * 0.35),
-            exit,
-            to,
-        ];
         let route = Route::new(points.iter().copied()).expect("the points are apart");
         Self {
             points,
@@ -136,4 +137,25 @@ impl Vehicle {
         self.s += 0.5 * (self.speed + speed) * STEP;
         self.speed = speed;
     }
+}
+
+/// In from one side, a bend in the middle, out to another.
+fn points(random: &mut Random) -> Vec<Point> {
+    let mut arm = |radius: f32| {
+        let angle = random.within(std::f32::consts::PI);
+        Point::new(radius * angle.cos(), radius * angle.sin())
+    };
+    let (from, to) = (arm(45.0), arm(45.0));
+    let (entry, exit) = (from * 0.15, to * 0.15);
+    let middle = Point::from((entry.coords + exit.coords) * 0.35);
+    vec![from, entry, middle, exit, to]
+}
+
+/// Whether no bend is too sharp for a junction.
+fn drivable(points: &[Point]) -> bool {
+    let route = Route::<POINTS>::new(points.iter().copied());
+    route.is_ok_and(|route| {
+        let mut builder = Junction::<1, POINTS>::builder();
+        builder.path(&route, Class::Car, Footprint::PAPER).is_ok()
+    })
 }

@@ -11,8 +11,8 @@ mod stack;
 
 use cede_controller::policy::embedded;
 use cede_controller::policy::weights::Aligned;
-use cede_controller::{Controller, Decision, Mlp, Policy, Scene, SceneError};
-use cede_golden::{Golden, OTHERS, QUESTION, answer, controller, observation};
+use cede_controller::{Approach, Decision, Mlp, Policy};
+use cede_golden::{Golden, Junction, QUESTION, Question, Wrong, answer, approach};
 use cortex_m_rt::entry;
 use cortex_m_semihosting::debug;
 use counter::{Counter, Range};
@@ -40,7 +40,7 @@ struct Tally {
     counter: Counter,
     network: Range,
     decision: Range,
-    /// Bytes of RAM, statics included, that preparing a scene and deciding need.
+    /// Bytes of RAM, statics included, that preparing a junction and deciding need.
     preparing: u32,
     deciding: u32,
     decisions: u32,
@@ -66,7 +66,7 @@ fn run() -> Result<(), &'static str> {
     while let Some(golden) = Golden::next(&mut words) {
         tally
             .drive(&policy, &golden)
-            .ok_or("a scene that is none")?;
+            .ok_or("a junction that is none")?;
     }
     tally.report();
     tally.verdict()
@@ -75,26 +75,24 @@ fn run() -> Result<(), &'static str> {
 impl Tally {
     fn drive(&mut self, policy: &Policy<'_>, golden: &Golden<'_>) -> Option<()> {
         stack::paint();
-        let mut scene = scene(golden);
-        let scene = scene.as_mut().ok()?;
-        golden.settle(scene);
+        let junction = junction(golden).ok()?;
         self.preparing = self.preparing.max(stack::touched());
-        self.decide(policy, golden, scene)
+        self.decide(policy, golden, &junction)
     }
 
-    /// Not inlined, so that the controller has its place only when there is one.
+    /// Not inlined, so that the approach has its place only when there is one.
     #[inline(never)]
     fn decide(
         &mut self,
         policy: &Policy<'_>,
         golden: &Golden<'_>,
-        scene: &Scene<OTHERS>,
+        junction: &Junction,
     ) -> Option<()> {
-        let controller = &mut controller(policy);
+        let approach = &mut approach(policy, junction).ok()?;
         stack::paint();
         for step in golden.steps {
             let (question, expected) = step.split_first_chunk()?;
-            let (decision, count) = decide(&mut self.counter, controller, scene, question);
+            let (decision, count) = decide(&mut self.counter, approach, question);
             self.decision.add(count);
             self.decisions += 1;
             self.wrong += u32::from(answer(&decision) != *expected);
@@ -111,7 +109,7 @@ impl Tally {
             ("instructions of the network, most", self.network.most),
             ("instructions of a decision, least", self.decision.least),
             ("instructions of a decision, most", self.decision.most),
-            ("RAM to prepare a scene, bytes", self.preparing),
+            ("RAM to prepare a junction, bytes", self.preparing),
             ("RAM to decide, bytes", self.deciding),
         ] {
             console::line(what, Some(number));
@@ -145,20 +143,20 @@ fn network(counter: &mut Counter, weights: &[u32]) -> Option<Range> {
 
 /// Not inlined, so that its frame is gone when a decision is made.
 #[inline(never)]
-fn scene(golden: &Golden<'_>) -> Result<Scene<OTHERS>, SceneError> {
-    golden.scene()
+fn junction(golden: &Golden<'_>) -> Result<Junction, Wrong> {
+    golden.junction()
 }
 
 /// Not inlined, so that the frame is the same for every step.
 #[inline(never)]
 fn decide(
     counter: &mut Counter,
-    controller: &mut Controller<'_, OTHERS>,
-    scene: &Scene<OTHERS>,
-    question: &[u32; QUESTION],
+    approach: &mut Approach<'_, '_>,
+    words: &[u32; QUESTION],
 ) -> (Decision, u32) {
-    let observation = observation(question);
-    counter.count(|| controller.decide(scene, &observation))
+    let question = Question::new(words);
+    let observation = question.observation();
+    counter.count(|| approach.decide(question.now, &observation))
 }
 
 /// Faults on purpose, by feature, that the checks on the linked image must find.

@@ -1,0 +1,301 @@
+//! What survives from one call to the next: plans, tracks that are missing or new, times that are wrong.
+
+use super::*;
+
+/// An ego that is committed to clear the crossing: it can no longer stop before it.
+fn committed<R: Rules>(run: &mut Run<'_, R>) -> Plan {
+    let decision = run.decide([50.0, 10.0], &[(1, [10.0, 5.0])], 3.0);
+    assert_eq!(decision.cause, Cause::Policy);
+    decision.plan.unwrap()
+}
+
+/// Where the committed ego is a period later, and the other.
+const NEXT: State = [51.015, 10.3];
+const OTHER: State = [10.5, 5.0];
+
+#[test]
+fn a_broken_contract_is_reported_and_the_plan_is_void() {
+    let site = crossing();
+    let mut run = Run::new(&site, WORST);
+    committed(&mut run);
+    // The other jumps to its zone; the ego can neither stop nor clear.
+    let decision = run.decide(NEXT, &[(1, [56.0, 5.0])], 3.0);
+    assert_eq!(decision.breach, Some(Breach::Other(1)));
+    assert_eq!(decision.cause, Cause::Fallback(Fault::NoPlan));
+    assert_eq!((decision.acceleration, run.shield.plan()), (-3.0, None));
+    // Recovery: as soon as a plan is safe again, everything is as it was.
+    let decision = run.decide([52.0, 10.0], &[(1, [64.0, 5.0])], 1.0);
+    assert_eq!(decision.cause, Cause::Policy);
+    assert!(run.shield.plan().is_some());
+}
+
+#[test]
+fn a_small_breach_is_reported_and_leaves_a_plan_that_still_holds() {
+    let site = crossing();
+    let mut run = Run::new(&site, WORST);
+    committed(&mut run);
+    let decision = run.decide(NEXT, &[(1, [12.0, 5.0])], f32::NAN);
+    assert_eq!(decision.breach, Some(Breach::Other(1)));
+    assert!(decision.plan.is_some(), "{decision:?}");
+}
+
+#[test]
+fn without_a_plan_nothing_else_is_the_cause() {
+    let site = crossing();
+    let mut run = Run::new(&site, WORST);
+    let decision = run.decide([50.0, 10.0], &[(1, [50.0, 5.0])], f32::NAN);
+    assert_eq!(decision.cause, Cause::Fallback(Fault::NoPlan));
+}
+
+#[test]
+fn a_bystander_that_comes_and_goes_changes_nothing() {
+    let beside = route(&[(-60.0, 30.0), (60.0, 30.0)]);
+    let site = site(&[east(), north(), beside]);
+    let mut run = Run::new(&site, WORST);
+    committed(&mut run);
+    let mut alone = run.shield.copy();
+    let now = Instant::from_millis(run.millis + 100);
+    let tracks = [track(&site, 1, OTHER), track(&site, 2, [60.0, 5.0])];
+    let seen = |tracks| Observation {
+        ego: ego(&site, NEXT),
+        tracks,
+    };
+    let with = run.shield.filter(now, &seen(&tracks), 0.0);
+    let without = alone.filter(now, &seen(&tracks[..1]), 0.0);
+    assert_eq!(with, without);
+    assert_eq!(run.shield.tracks.iter().count(), 1);
+}
+
+#[test]
+fn a_newcomer_voids_a_plan_only_if_its_own_zone_is_not_free() {
+    let second = route(&[(12.0, -60.0), (12.0, 60.0)]);
+    let site = site(&[east(), north(), second]);
+    for (newcomer, kept) in [([0.0, 5.0], true), ([52.0, 8.0], false)] {
+        let mut run = Run::new(&site, WORST);
+        committed(&mut run);
+        let decision = run.decide(NEXT, &[(1, OTHER), (2, newcomer)], 3.0);
+        assert_eq!(decision.plan.is_some(), kept, "{decision:?}");
+    }
+}
+
+/// Forgets whoever is not seen.
+struct Amnesia;
+impl Rules for Amnesia {
+    fn coast(contract: &Contract, _: f32, speed: f32, _: f32) -> Bounds {
+        Bounds::after(contract, 1e5, speed, 0.0)
+    }
+}
+
+#[test]
+fn one_that_is_missing_is_still_somewhere() {
+    fn margin<R: Rules>() -> f32 {
+        let site = crossing();
+        let mut run = Run::<R>::with_rules(&site, WORST);
+        run.decide([40.0, 5.0], &[(1, [40.0, 5.0])], -3.0);
+        run.decide([40.5, 5.0], &[], 3.0).margin
+    }
+    assert!(margin::<Sound>() < 20.0);
+    assert!(
+        margin::<Amnesia>() > 1e5,
+        "the rule is what makes the difference"
+    );
+}
+
+/// Whether nobody was in the ego's way at the last decision.
+fn free(run: &Run<'_>) -> bool {
+    run.shield.last.margin > 1e5
+}
+
+#[test]
+fn one_that_is_missing_ceases_to_matter_when_it_has_certainly_left() {
+    let site = crossing();
+    let mut run = Run::new(&site, WORST);
+    // Braking as hard as it can, it comes 14 m farther than its zone.
+    run.decide([1.0, 0.0], &[(1, [62.0, 15.0])], 0.0);
+    for _ in 0..3 {
+        run.decide([1.0, 0.0], &[], 0.0);
+    }
+    assert!(free(&run), "it has left");
+    run.decide([1.0, 0.0], &[(1, [20.0, 5.0])], 0.0);
+    for _ in 0..1000 {
+        run.decide([1.0, 0.0], &[], 0.0);
+    }
+    assert!(!free(&run), "it may have stopped");
+    run.shield.forget(1);
+    run.decide([1.0, 0.0], &[], 0.0);
+    assert!(free(&run));
+}
+
+#[test]
+fn the_order_of_tracks_does_not_matter() {
+    let second = route(&[(12.0, -60.0), (12.0, 60.0)]);
+    let site = site(&[east(), north(), second]);
+    let mut runs = [false, true].map(|_| Run::new(&site, Contract::ALL_WAY_STOP));
+    for step in 0..40_u8 {
+        let t = 0.1 * f32::from(step);
+        let own = [20.0 + 5.0 * t, 5.0];
+        let mut others = [(1, [20.0 + 6.0 * t, 6.0]), (2, [10.0 + 7.0 * t, 7.0])];
+        let one = runs[0].decide(own, &others, 1.0);
+        others.reverse();
+        let two = runs[1].decide(own, &others, 1.0);
+        assert_eq!(one.acceleration, two.acceleration, "step {step}");
+    }
+}
+
+#[test]
+fn without_room_the_nearest_unwatched_zone_is_closed() {
+    let third = route(&[(20.0, -60.0), (20.0, 60.0)]);
+    let site = site(&[
+        east(),
+        north(),
+        route(&[(10.0, -60.0), (10.0, 60.0)]),
+        third,
+    ]);
+    let mut shield = Shield::<2>::enter(WORST, &site, EGO).unwrap();
+    let tracks = [3, 1, 2].map(|number| track(&site, number, [1.0, 0.0]));
+    let seen = Observation {
+        ego: ego(&site, [40.0, 8.0]),
+        tracks: &tracks,
+    };
+    let decision = shield.filter(Instant::from_millis(5), &seen, 3.0);
+    assert_eq!(decision.unwatched, Some(3), "{decision:?}");
+    let rest = zone(&site, 3).ego.from - 40.0;
+    assert!(
+        decision.margin < rest,
+        "it has to stop before the third zone"
+    );
+    assert!(decision.to_string().ends_with("no room to watch other 3"));
+}
+
+#[test]
+fn two_of_one_number_are_both_feared() {
+    let site = crossing();
+    let mut run = Run::new(&site, WORST);
+    let tracks = [[1.0, 0.0], [50.0, 5.0]].map(|state| track(&site, 1, state));
+    let decision = run.observe(ego(&site, [40.0, 8.0]), &tracks, 3.0);
+    assert!(
+        matches!(decision.fault, Some(Fault::Input(_))),
+        "{decision:?}"
+    );
+    assert_eq!(decision.unwatched, Some(1));
+}
+
+#[test]
+fn all_candidates_count_until_one_is_left_out() {
+    let away = route(&[(0.0, -60.0), (0.0, -25.0), (50.0, -15.0)]);
+    let site = site(&[east(), north(), away]);
+    let vehicle = on(&site, PathId::new(1), [30.0, 5.0]);
+    let undecided = Track::on(5, PathId::new(2), vehicle)
+        .or(PathId::new(1), 30.0)
+        .unwrap();
+    let decided = Track::on(5, PathId::new(2), vehicle);
+    let mut run = Run::new(&site, WORST);
+    let feared = run.observe(ego(&site, [40.0, 8.0]), &[undecided], 0.0);
+    assert!(feared.margin < 1e5);
+    let free = run.observe(ego(&site, [40.8, 8.0]), &[decided], 0.0);
+    assert!(free.margin > 1e5, "{free:?}");
+}
+
+#[test]
+fn a_repeated_call_gives_the_same_decision_and_an_earlier_one_says_so() {
+    let site = crossing();
+    let mut run = Run::new(&site, WORST);
+    committed(&mut run);
+    let first = run.decide(NEXT, &[(1, OTHER)], 3.0);
+    run.millis -= 100;
+    assert_eq!(run.decide([0.0, 0.0], &[], -3.0), first);
+    run.millis -= 200;
+    let earlier = run.decide(NEXT, &[(1, OTHER)], 3.0);
+    assert_eq!(earlier.fault, Some(Fault::Backwards));
+    assert_eq!(earlier.acceleration, first.acceleration);
+}
+
+#[test]
+fn a_late_call_is_reported_and_the_plan_kept_if_it_holds() {
+    let site = crossing();
+    for (own, other, kept) in [
+        ([53.09, 10.9], [11.5, 5.0], true),
+        ([53.09, 10.9], [56.0, 8.0], false),
+    ] {
+        let mut run = Run::new(&site, WORST);
+        committed(&mut run);
+        run.millis += 200;
+        let decision = run.decide(own, &[(1, other)], f32::NAN);
+        assert!(
+            matches!(decision.fault, Some(Fault::OffPeriod { .. })),
+            "{decision:?}"
+        );
+        assert_eq!(decision.plan.is_some(), kept, "{decision:?}");
+    }
+}
+
+#[test]
+fn readiness_says_what_stands_in_the_way_and_remembers_nothing() {
+    let site = crossing();
+    let run = Run::new(&site, WORST);
+    let now = Instant::from_millis(1);
+    let tracks = [track(&site, 1, [50.0, 5.0])];
+    let mut seen = Observation {
+        ego: ego(&site, [30.0, 5.0]),
+        tracks: &tracks,
+    };
+    assert!(run.shield.ready(now, &seen).unwrap() >= 0.0);
+    assert_eq!(run.shield.plan(), None);
+    seen.ego = ego(&site, [50.0, 10.0]);
+    let why = run.shield.ready(now, &seen).unwrap_err();
+    assert!(matches!(why, NotReady::NoPlan { margin, .. } if margin < 0.0));
+    assert!(
+        why.to_string()
+            .starts_with("no plan is safe: other 1 may arrive"),
+        "{why}"
+    );
+}
+
+#[test]
+fn a_plan_survives_a_new_contract_if_it_holds_under_it() {
+    let site = crossing();
+    for (braking, kept) in [(3.0, true), (2.0, false)] {
+        let mut run = Run::new(&site, WORST);
+        // It can just stop.
+        let first = run.decide([36.0, 10.0], &[(1, [58.0, 0.0])], -3.0);
+        assert_eq!(first.plan, Some(Plan { go: 0 }));
+        let contract = WORST
+            .to_builder()
+            .ego_braking(braking)
+            .follower_braking(4.0);
+        run.shield.set_contract(contract.build().unwrap()).unwrap();
+        let decision = run.decide([36.99, 9.9], &[(1, [58.0, 0.0])], f32::NAN);
+        assert_eq!(decision.plan.is_some(), kept, "{decision:?}");
+    }
+}
+
+#[test]
+fn a_lane_entered_by_somebody_elses_courtesy_is_judged_afresh_when_that_fails() {
+    let site = site(&[east(), ramp()]);
+    let lane = zone(&site, 1);
+    let mut run = Run::new(&site, WORST);
+    // Centimetres before the lane's entry and nearly at rest, the other comes fast: the ego stays out, or says so.
+    let near = [lane.ego.from - 0.03, 0.5];
+    let other = [lane.other.from - 8.0, 13.0];
+    run.decide(near, &[(1, other)], -3.0);
+    let inside = [lane.ego.from + 0.02, 0.5];
+    let decision = run.decide(inside, &[(1, [other[0] + 1.3, 13.0])], 3.0);
+    assert!(decision.margin < 0.0, "{decision:?}");
+    assert_eq!(decision.cause, Cause::Fallback(Fault::NoPlan));
+}
+
+#[test]
+fn one_that_has_left_its_zone_is_no_newcomer_however_its_sensors_err() {
+    let site = crossing();
+    let contract = WORST.to_builder().position_error(0.3).build().unwrap();
+    let mut run = Run::new(&site, contract);
+    let end = zone(&site, 1).other.to;
+    // It stands just behind its zone, and is seen now behind and now in front of its end.
+    for step in 0..40_u8 {
+        let error = if step % 2 == 0 { 0.29 } else { -0.29 };
+        let own = [30.0 + 0.8 * f32::from(step), 8.0];
+        let decision = run.decide(own, &[(1, [end + 0.31 + error, 0.0])], 0.0);
+        assert!(decision.plan.is_some(), "step {step}: {decision}");
+        assert_eq!(decision.breach, None);
+    }
+}

@@ -1,0 +1,68 @@
+//! A vehicle's body: it moves along its lane as its drivetrain, its limiter or its human says.
+
+use crate::actuator::Actuator;
+use crate::judge::Seen;
+use crate::motion::{State, TICK};
+use crate::plane::Place;
+use crate::site::{Leg, Site};
+use crate::sway::Sway;
+
+/// One that is so near (m) to the end of its lane is gone.
+const END: f64 = 4.0;
+
+/// A vehicle on its lane.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// Its lane.
+    pub lane: usize,
+    /// Its motion.
+    pub state: State,
+    /// Arc length one tick ago.
+    pub before: f64,
+    /// Where it is beside its lane.
+    pub sway: Sway,
+    /// It does not accelerate beyond this speed.
+    pub cap: f64,
+    /// Its drivetrain.
+    pub actuator: Actuator,
+    /// The acceleration of the last tick.
+    pub felt: f64,
+    /// It has left by the end of its lane.
+    pub gone: bool,
+}
+
+impl Body {
+    /// Moves for one tick at `acceleration`.
+    pub fn go(&mut self, site: &Site, acceleration: f64) {
+        self.before = self.state.s;
+        self.felt = acceleration;
+        self.state = self.state.after(acceleration, TICK, self.cap);
+        self.gone = self.state.s > site.lanes[self.lane].line.length() - END;
+    }
+
+    /// As the judge sees it.
+    #[must_use]
+    pub fn seen<'s>(&self, site: &'s Site) -> Seen<'s> {
+        Seen {
+            lane: &site.lanes[self.lane],
+            sway: self.sway,
+            state: self.state,
+            before: self.before,
+        }
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn place(&self, site: &Site) -> Place {
+        self.seen(site).place()
+    }
+
+    /// The part of its lane in `junction`, if it is there now.
+    #[must_use]
+    pub fn leg(&self, site: &Site, junction: usize) -> Option<Leg> {
+        let legs = &site.lanes[self.lane].legs;
+        let leg = legs.iter().find(|leg| leg.junction == junction)?;
+        let along = self.state.s - leg.offset;
+        (!self.gone && (0.0..leg.length).contains(&along)).then_some(*leg)
+    }
+}

@@ -1,0 +1,102 @@
+//! Who touches whom, looked for after every tick in which it is possible.
+
+use crate::motion::{State, TICK};
+use crate::plane::{Place, separation};
+use crate::site::Lane;
+use crate::sway::Sway;
+
+/// Corners of a vehicle that turns are faster than its centre, by this factor at most.
+const CORNERS: f64 = 1.7;
+
+/// Two vehicles together do not become faster than this (m/s) within [`LONGEST`].
+const FASTER: f64 = 2.5;
+
+/// The longest time between two looks, in ticks.
+const LONGEST: f64 = 50.0;
+
+/// Ticks in which two vehicles that are `gap` m apart cannot touch.
+fn free_ticks(gap: f64, seen: [Seen<'_>; 2]) -> u64 {
+    // A kink moves corners at once.
+    let [a, b] = seen.map(|seen| seen.lane.jump);
+    let closing = CORNERS * (seen[0].state.v + seen[1].state.v + FASTER);
+    let ticks = (gap - a - b) / (closing * TICK);
+    ticks.clamp(0.0, LONGEST) as u64
+}
+
+/// A vehicle as the judge sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<'s> {
+    /// Its lane.
+    pub lane: &'s Lane,
+    /// Where it is beside it.
+    pub sway: Sway,
+    /// Its motion.
+    pub state: State,
+    /// Arc length one tick ago.
+    pub before: f64,
+}
+
+impl<'s> Seen<'s> {
+    /// Where it is; through gentle bends it turns steadily.
+    #[must_use]
+    pub fn place(&self) -> Place {
+        let s = self.state.s;
+        self.sway.displace(self.lane.line.turning_place(s, self.lane.gentle), s)
+    }
+
+    /// Where it was in between if it turned on the spot in this tick.
+    fn turns(self) -> impl Iterator<Item = Place> + use<'s> {
+        let passed = move |s: f64| self.before < s && s <= self.state.s;
+        let kinks = self.lane.kinks.iter().filter(move |kink| passed(kink.s));
+        kinks.flat_map(move |kink| {
+            let at = self.lane.line.place(kink.s).at;
+            (0..=6).map(move |i| {
+                let to = kink.between(f64::from(i) / 6.0);
+                self.sway.displace(Place { at, to }, kink.s)
+            })
+        })
+    }
+}
+
+/// Watches pairs, and knows for each when it has to look again.
+#[derive(Clone, Debug)]
+pub struct Judge {
+    count: usize,
+    /// The tick at which the pair can touch at the earliest.
+    next: Vec<u64>,
+    /// The least separation so far of a pair that was looked at.
+    pub closest: f64,
+}
+
+impl Judge {
+    /// For so many vehicles.
+    #[must_use]
+    pub fn new(count: usize) -> Self {
+        Self {
+            count,
+            next: vec![0; count * count],
+            closest: f64::INFINITY,
+        }
+    }
+
+    /// Whether vehicles `a` and `b`, which are `seen` at the end of `tick`, touch.
+    pub fn touch(&mut self, tick: u64, (a, b): (usize, usize), seen: [Seen<'_>; 2]) -> bool {
+        let next = &mut self.next[a * self.count + b];
+        if tick < *next {
+            return false;
+        }
+        let [one, two] = seen;
+        let (sa, sb) = (one.lane.size, two.lane.size);
+        let (pa, pb) = (one.place(), two.place());
+        let mut gap = separation(pa, sa, pb, sb);
+        for place in one.turns() {
+            gap = gap.min(separation(place, sa, pb, sb));
+        }
+        for place in two.turns() {
+            gap = gap.min(separation(pa, sa, place, sb));
+        }
+        *next = tick + 1 + free_ticks(gap, [one, two]);
+        self.closest = self.closest.min(gap);
+        gap < 0.0
+    }
+}

@@ -1,0 +1,209 @@
+//! Who is where at the beginning.
+
+use crate::actuator::Takeover;
+use crate::human::Manner;
+use crate::motion::State;
+use crate::numbers::Numbers;
+use crate::plane::separation;
+use crate::proposer::Proposer;
+use crate::rng::Rng;
+use crate::setup::{Car, Driver};
+use crate::site::{Area, Site};
+use crate::sway::Sway;
+
+/// How a scenario's vehicles begin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// On the way, before or in the junction.
+    Moving,
+    /// Most of them at rest near their lines.
+    Rest,
+    /// On the way, well before their lines.
+    Far,
+    /// One behind the other in the first lane.
+    Queue,
+}
+
+/// What humans are like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Manners {
+    /// They aim at shielded vehicles.
+    Hostile,
+    /// They do not look.
+    Gentle,
+    /// They accelerate as a search says.
+    Searched,
+}
+
+/// Who takes part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cast {
+    /// Vehicles.
+    pub vehicles: usize,
+    /// How many of them have the shield.
+    pub shielded: usize,
+    /// How they begin.
+    pub start: Start,
+    /// Probability that a shield is switched on late.
+    pub late: f64,
+    /// What the others are like.
+    pub manners: Manners,
+    /// Shielded vehicles are those of the first lane.
+    pub first_lane: bool,
+}
+
+/// How often a place for a vehicle is looked for.
+const ATTEMPTS: u32 = 25;
+
+impl Cast {
+    /// One shielded vehicle among `others` that are hostile.
+    #[must_use]
+    pub const fn one(others: usize) -> Self {
+        Self {
+            vehicles: others + 1,
+            shielded: 1,
+            start: Start::Moving,
+            late: 0.0,
+            manners: Manners::Hostile,
+            first_lane: false,
+        }
+    }
+
+    /// All vehicles are shielded.
+    #[must_use]
+    pub const fn all(vehicles: usize) -> Self {
+        Self {
+            shielded: vehicles,
+            ..Self::one(vehicles - 1)
+        }
+    }
+
+    /// The vehicles; none if there is no room for two.
+    #[must_use]
+    pub fn cars(&self, site: &Site, numbers: &Numbers, rng: &mut Rng) -> Option<Vec<Car>> {
+        let mut cars: Vec<Car> = Vec::new();
+        for number in 0..self.vehicles {
+            let found = (0..ATTEMPTS).find_map(|_| {
+                let car = self.car(number, site, numbers, rng);
+                let fits = cars.iter().all(|there| fit(site, numbers, there, &car));
+                fits.then_some(car)
+            });
+            if let Some(car) = found {
+                cars.push(car);
+            } else if number == 0 {
+                return None;
+            }
+        }
+        (cars.len() >= 2).then_some(cars)
+    }
+
+    fn car(&self, number: usize, site: &Site, numbers: &Numbers, rng: &mut Rng) -> Car {
+        let shielded = number < self.shielded;
+        let lane = if (self.first_lane && number == 0) || (self.start == Start::Queue && rng.chance(0.75)) {
+            0
+        } else {
+            rng.below(site.lanes.len())
+        };
+        let fastest = if shielded { numbers.ego.speed } else { numbers.other.speed };
+        let start = self.state(site, lane, fastest, rng);
+        let driver = if shielded {
+            self.shielded(numbers, rng)
+        } else {
+            Driver::Human(self.manner(rng))
+        };
+        let ego = numbers.ego;
+        let limiter = numbers.ego.speed + numbers.speed_error * rng.within(-1.0, 1.0);
+        let limited = rng.chance(0.5);
+        let any = rng.within(-ego.braking, ego.acceleration);
+        let acceleration = rng.pick(&[0.0, -ego.braking, ego.acceleration, any]);
+        // One that others fear keeps their bound on speed, before its shield does, too.
+        let fast = start.v + 0.5 * acceleration.max(0.0) > numbers.ego.speed;
+        Car {
+            lane,
+            start,
+            acceleration: if fast { 0.0 } else { acceleration },
+            driver,
+            cap: match (shielded, limited) {
+                (true, true) => limiter.min(numbers.other.speed),
+                (true, false) => f64::INFINITY,
+                _ => numbers.other.speed,
+            },
+            takeover: rng.pick(&Takeover::ALL),
+            sway: Sway::random(site.tolerance, site.lanes[lane].size.radius(), rng),
+        }
+    }
+
+    fn state(&self, site: &Site, lane: usize, fastest: f64, rng: &mut Rng) -> State {
+        let length = site.lanes[lane].line.length();
+        let line = site.line(lane).min(0.7 * length);
+        let rests = rng.chance(0.15);
+        let (ahead, v) = match self.start {
+            Start::Moving => (rng.within(-50.0, 10.0), rng.within(0.0, fastest)),
+            Start::Far => (rng.within(-70.0, -14.0), rng.within(0.0, fastest)),
+            Start::Queue => (rng.within(-60.0, 30.0), rng.within(0.0, fastest)),
+            Start::Rest => {
+                let near = rng.chance(0.7);
+                let v = if near { 0.0 } else { rng.within(0.0, 0.6 * fastest) };
+                (if near { rng.within(-9.0, -0.3) } else { rng.within(-40.0, -8.0) }, v)
+            }
+        };
+        State {
+            s: (line + ahead).clamp(2.0, length - 25.0),
+            v: if rests { 0.0 } else { v },
+        }
+    }
+
+    fn shielded(&self, numbers: &Numbers, rng: &mut Rng) -> Driver {
+        let late = rng.chance(self.late);
+        let before = if rng.chance(0.5) { Manner::Coast } else { Manner::Stand };
+        let from = 1 + rng.below(1200) as u64;
+        let mut proposer = Proposer::random(rng);
+        if let Proposer::Speed { wanted } = &mut proposer {
+            *wanted = wanted.min(numbers.ego.speed);
+        }
+        Driver::Shielded {
+            proposer,
+            from: if late { from } else { 0 },
+            before,
+        }
+    }
+
+    fn manner(&self, rng: &mut Rng) -> Manner {
+        match self.manners {
+            Manners::Hostile => Manner::random(rng),
+            Manners::Gentle => Manner::gentle(rng),
+            Manners::Searched => Manner::Profile(vec![0.0; 24]),
+        }
+    }
+}
+
+/// Whether two vehicles can begin like this, if they matter to each other.
+fn fit(site: &Site, numbers: &Numbers, a: &Car, b: &Car) -> bool {
+    let shielded = |car: &Car| matches!(car.driver, Driver::Shielded { .. });
+    let [one, two] = [a, b].map(|car| (car.lane, car.start));
+    !(shielded(a) || shielded(b)) || can_begin(site, numbers, one, two) && can_begin(site, numbers, two, one)
+}
+
+/// Whether control of a vehicle can be handed over while there is another: they are apart, and that one is not behind
+/// it in its lane, or has the safe gap. Each is a lane and a motion.
+#[must_use]
+pub fn can_begin(site: &Site, numbers: &Numbers, ego: (usize, State), other: (usize, State)) -> bool {
+    let place = |(lane, state): (usize, State)| site.lanes[lane].line.place(state.s);
+    let size = |(lane, _): (usize, State)| site.lanes[lane].size;
+    let gap = separation(place(ego), size(ego), place(other), size(other));
+    let areas = site.areas(ego.0, other.0);
+    let keeps = areas.iter().all(|area| has_gap(numbers, area, ego.1, other.1));
+    gap > 0.5 + 2.0 * site.tolerance && keeps
+}
+
+/// Whether `other` is not behind `ego` in a lane, as far as sensors tell, or can stop there.
+fn has_gap(numbers: &Numbers, area: &Area, ego: State, other: State) -> bool {
+    let error = 2.0 * numbers.position_error + 0.1;
+    let entered = ego.s + error >= area.ego[0] && other.s <= area.other[1];
+    let lead = ego.s - other.s;
+    let ahead = area.lane && entered && lead + 2.0 * error >= area.lead[0];
+    let v = |state: State, error: f64| (state.v + error).max(0.0);
+    let error_v = 2.0 * numbers.speed_error;
+    let needs = numbers.safe_gap(v(other, error_v), v(ego, -error_v)) + 2.0 * error;
+    !ahead || lead - area.lead[1] >= needs
+}

@@ -1,0 +1,290 @@
+//! A place where ways meet: the attacker's own polylines beside the junction that the controller is given.
+
+use crate::numbers::Numbers;
+use crate::plane::{Size, V2, dot};
+use crate::polyline::Polyline;
+use crate::rng::Rng;
+use crate::sketch::{Kind, Way};
+use cede_controller::{
+    Class, Footprint, Junction, JunctionError, PathId, Point, Route, RouteError, Zone,
+};
+
+/// Most paths of a junction.
+pub const PATHS: usize = 16;
+/// Most points of all of its paths.
+pub const POINTS: usize = 1536;
+
+/// The junction that is attacked.
+pub type Room = Junction<PATHS, POINTS>;
+
+/// The part of a lane that is a path of one junction.
+#[derive(Clone, Copy, Debug)]
+pub struct Leg {
+    /// Which junction.
+    pub junction: usize,
+    /// The path there.
+    pub path: PathId,
+    /// Arc length of the lane at which the path begins.
+    pub offset: f64,
+    /// Length of the path.
+    pub length: f64,
+}
+
+/// A point at which a lane turns by much.
+#[derive(Clone, Copy, Debug)]
+pub struct Kink {
+    /// Arc length.
+    pub s: f64,
+    /// Direction before and after it.
+    pub directions: [V2; 2],
+}
+
+impl Kink {
+    /// The direction after this share of the turn.
+    #[must_use]
+    pub fn between(&self, share: f64) -> V2 {
+        let [from, to] = self.directions;
+        let bend = dot(crate::plane::left(from), to).atan2(dot(from, to));
+        crate::plane::turned(from, share * bend)
+    }
+}
+
+/// Where vehicles of one size drive.
+#[derive(Clone, Debug)]
+pub struct Lane {
+    /// Its course.
+    pub line: Polyline,
+    /// Their footprint.
+    pub size: Size,
+    /// Their class.
+    pub class: Class,
+    /// Its parts in junctions, in order.
+    pub legs: Vec<Leg>,
+    /// Lanes with the same number begin alike.
+    pub entry: usize,
+    /// Points at which a vehicle that stays on the lane turns on the spot.
+    pub kinks: Vec<Kink>,
+    /// Through bends with at least this cosine it turns steadily, a little before and after.
+    pub gentle: f64,
+    /// No kink moves a corner by more than this, in m.
+    pub jump: f64,
+}
+
+/// A conflict zone of the controller's, in arc lengths of the lanes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Area {
+    /// Of the ego.
+    pub ego: [f64; 2],
+    /// Of the other.
+    pub other: [f64; 2],
+    /// The ego's less the other's.
+    pub lead: [f64; 2],
+    /// Both run along one lane in it.
+    pub lane: bool,
+}
+
+/// Ways, the junctions that they make, and how they meet there.
+#[derive(Debug)]
+pub struct Site {
+    /// The lanes.
+    pub lanes: Vec<Lane>,
+    /// The junctions, one after the other.
+    pub junctions: Vec<Box<Room>>,
+    /// The areas of each lane with each lane.
+    areas: Vec<Vec<Area>>,
+    /// Whose vehicles go first in a tie: the lanes in order. None: nobody's.
+    pub order: Option<Vec<usize>>,
+    /// How far vehicles may be from their lanes.
+    pub tolerance: f64,
+}
+
+/// Why the controller refuses a site.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Refusal {
+    /// A route.
+    Route(RouteError),
+    /// A junction.
+    Junction(JunctionError),
+}
+
+impl From<RouteError> for Refusal {
+    fn from(error: RouteError) -> Self {
+        Self::Route(error)
+    }
+}
+
+impl From<JunctionError> for Refusal {
+    fn from(error: JunctionError) -> Self {
+        Self::Junction(error)
+    }
+}
+
+/// What a junction's builder makes of a smaller bend: its pieces are larger by so much (m), so that a vehicle may turn
+/// anywhere near it.
+const SMALL_SWEEP: f64 = 0.029;
+
+fn class(kind: Kind) -> Class {
+    match kind {
+        Kind::Car => Class::Car,
+        Kind::Lorry => Class::Lorry,
+        Kind::Bicycle => Class::Bicycle,
+    }
+}
+
+/// The cosine of the largest bend in which half of the turn moves no corner by more than [`SMALL_SWEEP`].
+fn gentle(radius: f64) -> f64 {
+    (4.0 * (0.5 * SMALL_SWEEP / radius).min(1.0).asin()).cos()
+}
+
+fn kinks(line: &Polyline, gentle: f64) -> Vec<Kink> {
+    let directions = line.directions();
+    let pairs = directions.windows(2).zip(line.arc().iter().skip(1));
+    let sharp = pairs.filter(|(pair, _)| dot(pair[0], pair[1]) < gentle);
+    sharp
+        .map(|(pair, &s)| Kink {
+            s,
+            directions: [pair[0], pair[1]],
+        })
+        .collect()
+}
+
+impl Site {
+    /// The site of `ways`, whose vehicles may be `tolerance` m beside them; with rights of way by the lanes' `order`.
+    ///
+    /// # Errors
+    /// What the controller refuses.
+    pub fn new(
+        ways: &[Way],
+        tolerance: f64,
+        order: Option<Vec<usize>>,
+    ) -> Result<Self, Refusal> {
+        let count = ways.iter().flat_map(|way| &way.cuts).map(|cut| cut.junction + 1);
+        let mut site = Self {
+            lanes: ways.iter().map(lane).collect(),
+            junctions: Vec::new(),
+            areas: vec![Vec::new(); ways.len() * ways.len()],
+            order,
+            tolerance,
+        };
+        for junction in 0..count.max().unwrap_or(0) {
+            site.add_junction(ways, junction)?;
+        }
+        Ok(site)
+    }
+
+    fn add_junction(&mut self, ways: &[Way], junction: usize) -> Result<(), Refusal> {
+        let mut builder = Room::builder();
+        builder.tolerance(self.tolerance as f32);
+        let mut there = Vec::new();
+        for (number, way) in ways.iter().enumerate() {
+            let Some(cut) = way.cuts.iter().find(|cut| cut.junction == junction) else {
+                continue;
+            };
+            let points = &way.points[cut.from..cut.to];
+            let route = Route::<256>::new(points.iter().map(|p| Point::new(p[0], p[1])))?;
+            let footprint = Footprint {
+                length: way.size.length as f32,
+                width: way.size.width as f32,
+            };
+            let path = builder.path(&route, class(way.kind), footprint)?;
+            let leg = Leg {
+                junction,
+                path,
+                offset: self.lanes[number].line.arc()[cut.from],
+                length: route.length().into(),
+            };
+            self.lanes[number].legs.push(leg);
+            there.push((number, leg));
+        }
+        let rank = |lane: usize| {
+            let order = self.order.as_ref()?;
+            order.iter().position(|&other| other == lane)
+        };
+        for &(a, leg_a) in &there {
+            for &(b, leg_b) in &there {
+                if a != b && rank(a).zip(rank(b)).is_some_and(|(a, b)| a < b) {
+                    builder.right_of_way(leg_a.path, leg_b.path)?;
+                }
+            }
+        }
+        let built = Box::new(builder.build()?);
+        for &(a, leg_a) in &there {
+            for &(b, leg_b) in &there {
+                let conflict = built.conflict(leg_a.path, leg_b.path);
+                let zones = conflict.into_iter().flat_map(|conflict| conflict.zones());
+                let found = zones.map(|zone| area(zone, leg_a.offset, leg_b.offset));
+                self.areas[a * ways.len() + b].extend(found);
+            }
+        }
+        self.junctions.push(built);
+        Ok(())
+    }
+
+    /// The zones of a vehicle on lane `ego` with one on lane `other`.
+    #[must_use]
+    pub fn areas(&self, ego: usize, other: usize) -> &[Area] {
+        &self.areas[ego * self.lanes.len() + other]
+    }
+
+    /// Whether vehicles of lane `ego` go before those of lane `other` in a tie; none if nobody says so.
+    #[must_use]
+    pub fn goes_first(&self, ego: usize, other: usize) -> Option<bool> {
+        let order = self.order.as_ref()?;
+        let rank = |lane| order.iter().position(|&there| there == lane);
+        Some(rank(ego)? < rank(other)?)
+    }
+
+    /// A random order of the lanes.
+    #[must_use]
+    pub fn random_order(lanes: usize, rng: &mut Rng) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..lanes).collect();
+        rng.shuffle(&mut order);
+        order
+    }
+
+    /// Where on a lane its vehicles wait, by the controller.
+    #[must_use]
+    pub fn line(&self, lane: usize) -> f64 {
+        let leg = self.lanes[lane].legs[0];
+        let path = self.junctions[leg.junction].path(leg.path);
+        leg.offset + path.map_or(0.0, |path| f64::from(path.line()))
+    }
+
+    /// Whether `contract` tells who is ahead in every lane.
+    #[must_use]
+    pub fn suits(&self, numbers: &Numbers) -> bool {
+        let lanes = self.areas.iter().flatten().filter(|area| area.lane);
+        let widths = lanes.map(|area| area.lead[1] - area.lead[0]);
+        numbers.position_error < 0.249 * widths.fold(f64::INFINITY, f64::min)
+    }
+}
+
+fn lane(way: &Way) -> Lane {
+    let line = Polyline::new(&way.points);
+    let gentle = gentle(way.size.radius());
+    Lane {
+        kinks: kinks(&line, gentle),
+        gentle,
+        jump: 2.0 * way.size.radius() * (0.5 * line.sharpest()).sin(),
+        line,
+        size: way.size,
+        class: class(way.kind),
+        legs: Vec::new(),
+        entry: way.entry,
+    }
+}
+
+fn area(zone: &Zone, ego: f64, other: f64) -> Area {
+    Area {
+        ego: [f64::from(zone.ego.from) + ego, f64::from(zone.ego.to) + ego],
+        other: [
+            f64::from(zone.other.from) + other,
+            f64::from(zone.other.to) + other,
+        ],
+        lead: [
+            f64::from(zone.lead.from) + ego - other,
+            f64::from(zone.lead.to) + ego - other,
+        ],
+        lane: zone.is_lane(),
+    }
+}
