@@ -184,8 +184,8 @@ mutant! { a_plan_that_forgets_to_stop_after_the_zone_is_caught, RestsWhereItClea
     }
 }
 mutant! { a_missing_vehicle_that_is_taken_to_stand_still_is_caught, StandsStill,
-    fn coast(contract: &Contract, s: f32, speed: f32, _: f32) -> Bounds {
-        Bounds::after(contract, s, speed, 0.0)
+    fn coast(_: &Contract, bounds: Bounds, _: f32) -> Bounds {
+        bounds
     }
 }
 mutant! { an_ego_that_is_always_taken_for_the_one_ahead_is_caught, AlwaysAhead,

@@ -91,8 +91,8 @@ broken!(
     Frozen,
     "missing",
     {
-        fn coast(contract: &Contract, s: f32, speed: f32, _: f32) -> Bounds {
-            Bounds::after(contract, s, speed, 0.0)
+        fn coast(_: &Contract, bounds: Bounds, _: f32) -> Bounds {
+            bounds
         }
     }
 );

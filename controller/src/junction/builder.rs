@@ -169,7 +169,7 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
     /// 3 ms on a desktop for 12 paths of 64 points (`benches/junction.rs`).
     ///
     /// # Errors
-    /// [`JunctionError::NoPaths`], [`JunctionError::Tolerance`].
+    /// [`JunctionError::NoPaths`], [`JunctionError::Tolerance`], [`JunctionError::Returns`].
     // Not inlined, so that the stack of `fill` is free again when the junction is moved.
     #[inline(never)]
     pub fn build(mut self) -> Result<Junction<R, P, E>, JunctionError> {
@@ -180,28 +180,34 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
         if self.junction.paths.is_empty() {
             return Err(JunctionError::NoPaths);
         }
-        self.fill();
+        self.fill()?;
         Ok(self.junction)
     }
 
     /// Fills in conflicts and lines.
     // Not inlined, like `meet`: it works where the builder is, and no copy of a row is on the stack.
     #[inline(never)]
-    fn fill(&mut self) {
+    fn fill(&mut self) -> Result<(), JunctionError> {
         for path in &mut self.junction.paths {
             path.line = f32::INFINITY;
         }
         let count = self.junction.paths.len();
         for a in 0..count {
             for b in a..count {
-                if let Some(conflict) = self.between(a, b) {
-                    self.keep(a, b, &conflict);
+                match self.between(a, b) {
+                    Some(conflict) => self.keep(a, b, &conflict),
+                    // Two different paths always have one, and numbers of paths fit.
+                    None => {
+                        let path = PathId::new(u8::try_from(a).unwrap_or(u8::MAX));
+                        return Err(JunctionError::Returns { path });
+                    }
                 }
             }
         }
         for i in 0..count {
             self.settle_line(i);
         }
+        Ok(())
     }
 
     #[inline(never)]
@@ -213,11 +219,11 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
             let polyline = Polyline::new(points, arc);
             Some(Body::new(polyline, path.footprint, self.junction.tolerance))
         };
-        Some(if a == b {
+        if a == b {
             RouteConflict::with_itself(&body(a)?)
         } else {
-            RouteConflict::between(&body(a)?, &body(b)?)
-        })
+            Some(RouteConflict::between(&body(a)?, &body(b)?))
+        }
     }
 
     /// Keeps how paths `a` and `b` meet for each of the two that can be entered, and for their lines.

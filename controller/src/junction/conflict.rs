@@ -84,14 +84,14 @@ impl RouteConflict {
         }
     }
 
-    /// How two vehicles on one route meet: in a lane, from its start on.
+    /// How two vehicles on one route meet: in a lane, from its start on. None if the route comes back to itself.
     #[inline(never)]
-    pub(crate) fn with_itself(body: &Body<'_>) -> Self {
-        Self {
+    pub(crate) fn with_itself(body: &Body<'_>) -> Option<Self> {
+        Some(Self {
             kind: ConflictKind::Following,
-            zones: [Some(zone_with_itself(body)), None, None],
+            zones: [Some(zone_with_itself(body)?), None, None],
             ..Self::NONE
-        }
+        })
     }
 
     /// Where the footprints can touch; at most [`MAX_ZONES`], in no particular order.

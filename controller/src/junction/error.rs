@@ -61,6 +61,11 @@ pub enum JunctionError {
         /// Its length in metres.
         length: f32,
     },
+    /// A path comes back to where its own vehicles may still be: nobody on it could tell who is ahead.
+    Returns {
+        /// The path.
+        path: PathId,
+    },
     /// A line is not on its path.
     Line {
         /// The path.
@@ -116,6 +121,10 @@ impl Display for JunctionError {
             Self::TooLong { path, length } => write!(
                 f,
                 "{path}: {length} m long, more than {MAX_PATH_LENGTH} m: cut it off before or after the junction"
+            ),
+            Self::Returns { path } => write!(
+                f,
+                "{path}: comes back to itself, nearer than its vehicles are wide: cut it in two"
             ),
             Self::Line {
                 path,

@@ -2,6 +2,7 @@
 
 use super::contract::Contract;
 use super::margin;
+use super::reach::Reach;
 use crate::junction::zone::Span;
 
 /// Bounds on another vehicle's arc length (m) and speed (m/s).
@@ -14,18 +15,31 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// Of a vehicle that was sensed at arc length `s` (m) with `speed` (m/s) so many seconds ago.
-    ///
-    /// It coasts: from then on it does anything that the contract allows. At `time` 0 these are the errors of sensing.
+    /// Of a vehicle that is sensed at arc length `s` (m) with `speed` (m/s).
     #[must_use]
-    pub fn after(contract: &Contract, s: f32, speed: f32, time: f32) -> Self {
+    pub fn sensed(contract: &Contract, s: f32, speed: f32) -> Self {
         let (place, error) = (contract.position_error, contract.speed_error);
-        let slowest = margin::dawdle(contract, speed - error, time);
-        let fastest = margin::rush(contract, speed + error, time);
         Self {
             s: Span {
-                from: s - place + slowest.distance,
-                to: s + place + fastest.distance,
+                from: s - place,
+                to: s + place,
+            },
+            speed: Span {
+                from: Reach::start(speed - error).speed,
+                to: Reach::start(speed + error).speed,
+            },
+        }
+    }
+
+    /// The bounds after `time` (s), in which the vehicle does anything that the contract allows.
+    #[must_use]
+    pub fn after(&self, contract: &Contract, time: f32) -> Self {
+        let slowest = margin::dawdle(contract, self.speed.from, time);
+        let fastest = margin::rush(contract, self.speed.to, time);
+        Self {
+            s: Span {
+                from: self.s.from + slowest.distance,
+                to: self.s.to + fastest.distance,
             },
             speed: Span {
                 from: slowest.speed,

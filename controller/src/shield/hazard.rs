@@ -34,8 +34,10 @@ pub(crate) struct Hazard {
     pub target: f32,
     /// The ego must come to rest within this distance unless it clears the zone in time.
     pub limit: f32,
-    /// The least limit of the hazards whose targets are farther.
-    pub limit_beyond: f32,
+    /// Where it does come to rest, so that it keeps other zones clear: no farther than `limit`.
+    pub rest: f32,
+    /// The least `rest` of the hazards whose targets are farther.
+    pub rest_beyond: f32,
     /// What clearing in time means.
     pub passage: Passage,
 }
@@ -124,7 +126,7 @@ impl Hazards {
         for hazard in &mut self.sorted {
             let crosses = matches!(hazard.passage, Passage::Before { .. });
             if crosses && !hazard.yields && (from..to).contains(&hazard.limit) {
-                hazard.limit = from;
+                hazard.rest = from;
             }
         }
     }
@@ -133,11 +135,11 @@ impl Hazards {
         self.sorted.iter()
     }
 
-    /// The least limit of all.
-    pub(crate) fn nearest_limit(&self) -> f32 {
+    /// Where the ego comes to rest before all of them.
+    pub(crate) fn nearest_rest(&self) -> f32 {
         self.sorted
             .first()
-            .map_or(FAR, |first| Real::min(first.limit, first.limit_beyond))
+            .map_or(FAR, |first| Real::min(first.rest, first.rest_beyond))
     }
 
     fn insert<R: Rules>(&mut self, hazard: Hazard) {
@@ -155,8 +157,8 @@ impl Hazards {
     fn look_beyond(&mut self) {
         let mut least = FAR;
         for hazard in self.sorted.iter_mut().rev() {
-            hazard.limit_beyond = least;
-            least = Real::min(least, hazard.limit);
+            hazard.rest_beyond = least;
+            least = Real::min(least, hazard.rest);
         }
     }
 }
@@ -172,7 +174,8 @@ impl Hazard {
             yields: false,
             target: FAR,
             limit: closed.from - ego.s - contract.position_error,
-            limit_beyond: FAR,
+            rest: closed.from - ego.s - contract.position_error,
+            rest_beyond: FAR,
             passage: Passage::Never,
         }
     }
@@ -201,7 +204,8 @@ fn hazard<R: Rules>(
         // The ego is then past the zone by twice the error, so that it will be seen to be.
         target: R::cleared_at(zone) - ego.s + 3.0 * error,
         limit: stop,
-        limit_beyond: FAR,
+        rest: stop,
+        rest_beyond: FAR,
         passage: Passage::Before {
             distance: zone.other.from - bounds.s.to,
             speed,
@@ -215,30 +219,40 @@ fn hazard<R: Rules>(
         return None;
     }
     let behind = behind::<R>(contract, zone, ego, other);
-    Some(if !is_ahead::<R>(zone, ego, other) && behind > stop {
-        Hazard {
-            target: FAR,
-            limit: behind,
-            passage: Passage::Never,
-            ..crossing
-        }
-    } else {
-        Hazard {
-            target: zone.ego.from - ego.s + 3.0 * error,
-            passage: Passage::Ahead {
-                gap: gap_ahead(zone, ego, other),
-                speed,
-            },
-            ..crossing
-        }
-    })
+    Some(
+        if !is_ahead::<R>(contract, zone, ego, other) && behind > stop {
+            Hazard {
+                target: FAR,
+                limit: behind,
+                rest: behind,
+                passage: Passage::Never,
+                ..crossing
+            }
+        } else {
+            Hazard {
+                target: zone.ego.from - ego.s + 3.0 * error,
+                passage: Passage::Ahead {
+                    gap: gap_ahead(zone, ego, other),
+                    speed,
+                },
+                ..crossing
+            }
+        },
+    )
 }
 
 /// Whether the ego is certainly in the lane, and ahead of the other in it.
 ///
-/// Two vehicles in a lane do not overlap: one that is not behind by the whole band is ahead.
-pub(super) fn is_ahead<R: Rules>(zone: &Zone, ego: &Own, other: &Other) -> bool {
-    ego.least >= zone.ego.from && R::is_ahead(zone, ego.least - other.bounds.s.to)
+/// Two vehicles in a lane do not overlap, and the middle of the band is where they would: sensing errors are too small
+/// to take one side for the other ([`super::EnterError::PositionError`]). One that coasts counts where it may be farthest.
+pub(super) fn is_ahead<R: Rules>(
+    contract: &Contract,
+    zone: &Zone,
+    ego: &Own,
+    other: &Other,
+) -> bool {
+    let lead = ego.s - (other.bounds.s.to - contract.position_error);
+    ego.least >= zone.ego.from && R::is_ahead(zone, lead)
 }
 
 /// The gap (m), at least, from the other to the ego ahead of it once that has entered the lane.
@@ -293,7 +307,7 @@ pub(super) fn settle<'z, R: Rules>(
 ) {
     let appeared = other.news == News::Appeared;
     for (index, zone) in (0_u8..).zip(zones) {
-        if !zone.is_lane() || !is_ahead::<R>(zone, ego, other) {
+        if !zone.is_lane() || !is_ahead::<R>(contract, zone, ego, other) {
             continue;
         }
         let slowest = Real::max(ego.speed - contract.speed_error, 0.0);

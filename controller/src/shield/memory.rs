@@ -8,6 +8,7 @@ use super::reach::Reach;
 use crate::instant::{Instant, micros};
 use crate::junction::zone::FAR;
 use crate::observation::Vehicle;
+use crate::real::Real;
 
 /// What is left of the plan that was verified last.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,10 +26,10 @@ struct Remembered {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Memory {
     remembered: Option<Remembered>,
-    /// The last command in m/s², and the one before it.
-    commands: [Option<f32>; 2],
-    /// When the last command was given.
-    given: Option<Instant>,
+    /// The last command in m/s², and when it was given.
+    command: Option<(f32, Instant)>,
+    /// The accelerations (m/s²) that may still be in effect until the last command is: least and most. None: any.
+    before: Option<[f32; 2]>,
     last: Option<(Vehicle, Instant)>,
     /// Arc length (m), at least, of the ego when it was seen last.
     least: f32,
@@ -40,8 +41,8 @@ impl Memory {
     pub(crate) const fn new() -> Self {
         Self {
             remembered: None,
-            commands: [None; 2],
-            given: None,
+            command: None,
+            before: None,
             last: None,
             least: -FAR,
             blind: 0,
@@ -68,6 +69,13 @@ impl Memory {
         if let Some(remembered) = &mut self.remembered {
             remembered.at = now;
             remembered.calls = 0;
+            remembered.closed = closed;
+        }
+    }
+
+    /// What is left of the plan stays out of zones that begin at `closed` (m).
+    pub(crate) fn avoid(&mut self, closed: f32) {
+        if let Some(remembered) = &mut self.remembered {
             remembered.closed = closed;
         }
     }
@@ -105,18 +113,32 @@ impl Memory {
 
     /// The ego's acceleration until the command to be given at `now` takes effect: least and most.
     pub(crate) fn in_effect(&self, contract: &Contract, now: Instant) -> [f32; 2] {
-        let settled = self
-            .given
-            .is_some_and(|given| now.since(given) + 1 >= micros(contract.latency));
-        match self.commands {
-            [Some(command), _] if settled => [command; 2],
-            commands => between(contract, commands),
+        match self.command {
+            Some((command, given)) if now.since(given) + 1 >= micros(contract.latency) => {
+                [command; 2]
+            }
+            _ => self.possible(contract),
         }
     }
 
-    pub(crate) fn command(&mut self, acceleration: f32, now: Instant) {
-        self.commands = [Some(acceleration), self.commands[0]];
-        self.given = Some(now);
+    pub(crate) fn command(&mut self, contract: &Contract, acceleration: f32, now: Instant) {
+        self.before = self.command.map(|_| self.in_effect(contract, now));
+        self.command = Some((acceleration, now));
+    }
+
+    /// What was known of the ego says nothing about the next observation.
+    pub(crate) fn forget_ego(&mut self) {
+        self.last = None;
+    }
+
+    /// The last command, or what was in effect before it.
+    fn possible(&self, contract: &Contract) -> [f32; 2] {
+        match (self.command, self.before) {
+            (Some((command, _)), Some([least, most])) => {
+                [Real::min(command, least), Real::max(command, most)]
+            }
+            _ => anything(contract),
+        }
     }
 
     /// Notes where the ego is at `now`; and whether its commands can have brought it there.
@@ -143,9 +165,10 @@ impl Memory {
 
     /// The ego's acceleration since it was seen last: least and most.
     fn accelerations(&self, contract: &Contract) -> [f32; 2] {
-        match self.commands {
-            commands if self.blind <= 1 => between(contract, commands),
-            _ => between(contract, [None; 2]),
+        if self.blind <= 1 {
+            self.possible(contract)
+        } else {
+            anything(contract)
         }
     }
 
@@ -163,11 +186,7 @@ impl Memory {
     }
 }
 
-/// The least and the most of two commands; anything, if one of them is not known.
-fn between(contract: &Contract, commands: [Option<f32>; 2]) -> [f32; 2] {
-    match commands {
-        [Some(a), Some(b)] if a < b => [a, b],
-        [Some(a), Some(b)] => [b, a],
-        _ => [-contract.ego.braking, contract.ego.acceleration],
-    }
+/// Everything that can be commanded: least and most.
+const fn anything(contract: &Contract) -> [f32; 2] {
+    [-contract.ego.braking, contract.ego.acceleration]
 }

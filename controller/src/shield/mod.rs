@@ -97,7 +97,7 @@ pub enum EnterError {
         path: PathId,
         /// The contract's value in m.
         value: f32,
-        /// It must be less than this (m), a quarter of the width of the lane's band.
+        /// It must be less than this (m): a quarter of the width of the lane's band, and of the two lengths together.
         below: f32,
     },
 }
@@ -231,7 +231,9 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
     /// [`EnterError::PositionError`]; nothing is changed then.
     pub fn set_contract(&mut self, contract: Contract) -> Result<(), EnterError> {
         tells_apart(&contract, self.way)?;
-        if contract.precedence != self.contract.precedence {
+        if contract.precedence != self.contract.precedence
+            || contract.period != self.contract.period
+        {
             // What was counted by the former rule says nothing about this one.
             self.presence = Presence::default();
             for other in self.tracks.iter_mut() {
@@ -239,6 +241,10 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
                 other.pair.forget();
             }
         }
+        if let Some(now) = self.clock.last() {
+            self.tracks.rebase(now);
+        }
+        self.memory.forget_ego();
         self.replaced |= !contract.keeps_plans_of(&self.contract);
         self.contract = contract;
         Ok(())
@@ -288,7 +294,8 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         if let Some(fault) = self.off_period(tick) {
             decision.fault = decision.fault.or(Some(fault));
         }
-        self.memory.command(decision.acceleration, now);
+        self.memory
+            .command(&self.contract, decision.acceleration, now);
         self.last = decision;
         decision
     }
@@ -567,8 +574,10 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         let margin = spare::<R>(contract, suspects, &departure, R::tail(plan));
         if !R::keeps(margin) {
             self.void();
-        } else if all || barred {
+        } else if all {
             self.memory.confirmed(now, closed);
+        } else if barred {
+            self.memory.avoid(closed);
         }
     }
 
@@ -665,9 +674,12 @@ const fn next(contract: &Contract, plan: Plan) -> f32 {
 
 /// Whether in every lane that the ego shares, sensed positions tell who is ahead.
 fn tells_apart(contract: &Contract, way: Way<'_>) -> Result<(), EnterError> {
-    for (path, conflict) in way.conflicts() {
+    let length = |path| way.path(path).map_or(0.0, |path| path.footprint().length);
+    for (path, conflict) in way.conflicts().take(way.paths()) {
+        let touching = length(way.ego()) + length(path);
         for zone in conflict.zones().filter(|zone| zone.is_lane()) {
-            let below = 0.25 * (zone.lead.to - zone.lead.from);
+            let band = zone.lead.to - zone.lead.from;
+            let below = 0.25 * if band < touching { band } else { touching };
             let value = contract.position_error;
             if value >= below {
                 return Err(EnterError::PositionError { path, value, below });
@@ -731,13 +743,13 @@ impl Scene<'_> {
         };
         for hazard in self.hazards.iter() {
             let other = hazard.other;
-            if R::stops_short(contract, hazard.limit, needs) >= 0.0 {
+            if R::stops_short(contract, hazard.rest, needs) >= 0.0 {
                 continue;
             }
             let (clears, ego_speed) = margin::clearing(contract, departure.least, hazard.target);
             stop = Reason::Stop {
                 other,
-                available: hazard.limit,
+                available: hazard.rest,
                 needs,
             };
             if passage_margin::<R>(contract, hazard, clears, ego_speed) >= 0.0 {

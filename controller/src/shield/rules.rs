@@ -54,16 +54,16 @@ pub trait Rules {
         margin::earliest_rest(contract, speed)
     }
 
-    /// Where an other is that was sensed at `s` (m) with `speed` (m/s) `time` seconds ago: [`Bounds::after`].
+    /// Where an other is now that was within `bounds` `time` seconds ago: [`Bounds::after`].
     #[must_use]
-    fn coast(contract: &Contract, s: f32, speed: f32, time: f32) -> Bounds {
-        Bounds::after(contract, s, speed, time)
+    fn coast(contract: &Contract, bounds: Bounds, time: f32) -> Bounds {
+        bounds.after(contract, time)
     }
 
-    /// Whether an ego that leads by at least `lead` (m) in a lane is ahead of the other there.
+    /// Whether an ego that leads by `lead` (m) in a lane, as sensed, is ahead of the other there.
     #[must_use]
     fn is_ahead(zone: &Zone, lead: f32) -> bool {
-        lead > zone.lead.from
+        lead >= zone.middle()
     }
 
     /// Whether a remembered plan with so many metres to spare keeps the guarantee against somebody new.

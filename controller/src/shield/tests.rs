@@ -393,7 +393,7 @@ fn stops_for(right_of_way: RightOfWay) -> (f32, [f32; 2]) {
     let own = [zones[0].ego.from - 5.0, 0.0];
     let rest = |i: usize| [zones[i].other.from - 0.1, 0.0];
     let others = [(1, rest(0), precedence::ALL), (2, rest(1), 0)];
-    let limit = hazards(&site, &Contract::ALL_WAY_STOP, own, &others).nearest_limit();
+    let limit = hazards(&site, &Contract::ALL_WAY_STOP, own, &others).nearest_rest();
     (limit, zones.map(|zone| zone.ego.from - own[0]))
 }
 

@@ -3,6 +3,7 @@
 use super::bounds::Bounds;
 use super::contract::Contract;
 use super::door;
+use super::hazard;
 use super::own::Own;
 use super::precedence::{PairMemory, ZoneSet, has};
 use super::rules::Rules;
@@ -19,9 +20,10 @@ use heapless::Vec;
 pub(crate) struct Other {
     pub(crate) number: u16,
     pub(crate) path: PathId,
-    /// As it was sensed last, at `at`.
-    s: f32,
+    /// The speed (m/s) at which it was sensed last.
     speed: f32,
+    /// Where it was at `at`: when it was sensed last, or when the contract was replaced.
+    base: Bounds,
     at: Instant,
     /// Where it is now.
     pub(crate) bounds: Bounds,
@@ -101,6 +103,13 @@ impl<const N: usize> Tracks<N> {
         self.0.retain(|other| other.number != number);
     }
 
+    /// Until `now` everybody kept to one contract, from now on to another one.
+    pub(crate) fn rebase(&mut self, now: Instant) {
+        for other in &mut self.0 {
+            (other.base, other.at) = (other.bounds, now);
+        }
+    }
+
     /// Where everybody may be at `now`, if nothing is seen.
     pub(crate) fn coast<R: Rules>(&mut self, contract: &Contract, now: Instant) {
         for other in &mut self.0 {
@@ -129,22 +138,10 @@ impl<const N: usize> Tracks<N> {
             other.news = News::None;
         }
         self.coast::<R>(contract, now);
-        for track in seen.tracks {
-            let mut others = self.0.iter();
-            if others.any(|other| other.seen && other.number == track.number) {
-                findings.fault = findings.fault.or(Some(door::twice(track.number)));
-            }
-            // A candidate that is left out is excluded by what was seen.
-            self.0.retain(|other| {
-                other.number != track.number || other.seen || track.may_be_on(other.path)
-            });
-            for candidate in track.candidates() {
-                self.note_candidate::<R>(
-                    (contract, way),
-                    (now, ego),
-                    (track, candidate),
-                    &mut findings,
-                );
+        // Who is known comes first, so that a newcomer finds as much room as there is.
+        for newcomers in [false, true] {
+            for track in seen.tracks {
+                self.note_track::<R>((contract, way), (now, ego), track, newcomers, &mut findings);
             }
         }
         for other in &mut self.0 {
@@ -152,6 +149,45 @@ impl<const N: usize> Tracks<N> {
             other.gone |= ahead.is_none();
         }
         findings
+    }
+
+    /// Notes the candidates of a track that are known, or those that are not.
+    fn note_track<R: Rules>(
+        &mut self,
+        context: (&Contract, Way<'_>),
+        when: (Instant, &Own),
+        track: &Track,
+        newcomers: bool,
+        findings: &mut Findings,
+    ) {
+        let number = track.number;
+        if !newcomers
+            && self
+                .0
+                .iter()
+                .any(|other| other.seen && other.number == number)
+        {
+            findings.fault = findings.fault.or(Some(door::twice(number)));
+        }
+        for candidate in track.candidates() {
+            // One that has appeared in this observation is a newcomer to the next track with its number, too.
+            let known = self.0.iter().any(|other| {
+                other.number == number
+                    && other.path == candidate.path
+                    && other.news != News::Appeared
+            });
+            if known != newcomers {
+                self.note_candidate::<R>(context, when, (track, candidate), findings);
+            }
+        }
+        // A candidate that is left out is excluded by what was seen, if anything was.
+        let (contract, way) = context;
+        let placed = |candidate| door::track(way, contract, track, candidate).is_ok();
+        if newcomers && track.candidates().any(placed) {
+            self.0.retain(|other| {
+                other.number != number || other.seen || track.may_be_on(other.path)
+            });
+        }
     }
 
     fn note_candidate<R: Rules>(
@@ -167,7 +203,8 @@ impl<const N: usize> Tracks<N> {
         match (self.0.iter_mut().find(known), checked) {
             // Two vehicles of one number on one path: there is no place to watch the second one.
             (Some(other), _) if other.seen => {
-                if let Some(from) = unplaced(way, path, ego.least) {
+                findings.fault = findings.fault.or(Some(door::twice(number)));
+                if let Some(from) = unplaced(way, (track, path), ego.least) {
                     findings.close(number, from);
                 }
             }
@@ -175,7 +212,10 @@ impl<const N: usize> Tracks<N> {
             // It coasts.
             (Some(_), Err(fault)) => findings.fault = findings.fault.or(Some(fault)),
             (None, Ok(vehicle)) => {
-                let other = Other::new(contract, number, path, &vehicle, now);
+                let mut other = Other::new(contract, number, path, &vehicle, now);
+                if let Some(conflict) = way.conflict(path) {
+                    hazard::settle::<R>(contract, conflict.zones(), ego, &mut other);
+                }
                 // One that seems to have left may seem not to have in the next observation: it is known from now on.
                 let spare = 2.0 * contract.position_error;
                 if other.entry::<R>(way, ego.least, spare).is_some() {
@@ -185,14 +225,14 @@ impl<const N: usize> Tracks<N> {
             // Nobody knows where it is: its zones may be occupied.
             (None, Err(fault)) => {
                 findings.fault = findings.fault.or(Some(fault));
-                if let Some(from) = unplaced(way, path, ego.least) {
+                if let Some(from) = unplaced(way, (track, path), ego.least) {
                     findings.close(number, from);
                 }
             }
         }
     }
 
-    /// Adds a newcomer. Without room the one whose zones the ego enters last is not watched.
+    /// Adds a newcomer. Without room, of those who appear the one whose zones the ego enters last is not watched.
     fn add<R: Rules>(
         &mut self,
         (contract, way): (&Contract, Way<'_>),
@@ -201,14 +241,14 @@ impl<const N: usize> Tracks<N> {
         findings: &mut Findings,
     ) {
         if self.0.is_full() {
-            // What has left by more than sensors can err in two observations will never seem not to have.
+            // What has left by more than sensors can err in two observations will never seem not to have; and who
+            // keeps its distance behind the ego is known again when it is seen again.
             let spare = 2.0 * contract.position_error;
-            let for_good = |other: &Other| other.entry::<R>(way, ego.least, spare).is_none();
-            if let Some(place) = self
-                .0
-                .iter()
-                .position(|other| other.gone && for_good(other))
-            {
+            let idle = |other: &Other| match other.gone {
+                true => other.entry::<R>(way, ego.least, spare).is_none(),
+                false => other.seen && other.unsettled::<R>(way, ego.least).is_none(),
+            };
+            if let Some(place) = self.0.iter().position(idle) {
                 self.0.swap_remove(place);
             }
         }
@@ -216,12 +256,17 @@ impl<const N: usize> Tracks<N> {
             let _ = self.0.push(newcomer);
             return;
         }
-        let Some(mut entry) = newcomer.entry::<R>(way, ego.least, 0.0) else {
-            // It has left, and there is no room to remember it.
+        let Some(mut entry) = newcomer.unsettled::<R>(way, ego.least) else {
+            // It has left or keeps its distance, and there is no room to remember it.
             return;
         };
-        for other in self.0.iter_mut().filter(|other| !other.gone) {
-            match other.entry::<R>(way, ego.least, 0.0) {
+        // A plan may count on those who are known: only among those who appear with it is there a choice.
+        for other in self
+            .0
+            .iter_mut()
+            .filter(|other| other.news == News::Appeared)
+        {
+            match other.unsettled::<R>(way, ego.least) {
                 Some(its) if its > entry => {
                     core::mem::swap(other, &mut newcomer);
                     entry = its;
@@ -233,14 +278,17 @@ impl<const N: usize> Tracks<N> {
     }
 }
 
-/// Where (m) the ego enters the first zone that it has not passed at `ego` (m) with somebody of whom no more is known
+/// Where (m) the ego enters the first zone that it has not passed at `ego` (m) with a track of which no more is known
 /// than the path, or not even that.
-fn unplaced(way: Way<'_>, path: PathId, ego: f32) -> Option<f32> {
+fn unplaced(way: Way<'_>, (track, path): (&Track, PathId), ego: f32) -> Option<f32> {
+    let known = way
+        .path(path)
+        .is_some_and(|path| path.class() == track.class);
     let first = |conflict: &RouteConflict| {
         let ahead = conflict.zones().filter(|zone| ego < zone.ego.to);
         ahead.map(|zone| zone.ego.from).reduce(f32::min)
     };
-    match way.conflict(path) {
+    match way.conflict(path).filter(|_| known) {
         Some(conflict) => first(conflict),
         None => way
             .conflicts()
@@ -257,14 +305,15 @@ impl Other {
         vehicle: &Vehicle,
         now: Instant,
     ) -> Self {
-        let (s, speed) = (vehicle.s, vehicle.speed);
+        let speed = vehicle.speed;
+        let bounds = Bounds::sensed(contract, vehicle.s, speed);
         Self {
             number,
             path,
-            s,
             speed,
+            base: bounds,
             at: now,
-            bounds: Bounds::after(contract, s, speed, 0.0),
+            bounds,
             seen: true,
             news: News::Appeared,
             gone: false,
@@ -284,10 +333,10 @@ impl Other {
         findings: &mut Findings,
     ) {
         let (s, speed) = (vehicle.s, vehicle.speed);
-        let seen = Bounds::after(contract, s, speed, 0.0);
+        let seen = Bounds::sensed(contract, s, speed);
         let least = self.bounds.s.from;
         let possible = self.bounds.allow(contract, s, speed);
-        (self.s, self.speed, self.at) = (s, speed, now);
+        (self.speed, self.base, self.at) = (speed, seen, now);
         self.bounds = seen;
         self.seen = true;
         if possible {
@@ -301,12 +350,15 @@ impl Other {
         } else {
             self.news = News::Broke;
             (self.counted, self.settled) = (0, 0);
+            // Perhaps it is another one: nothing is known of who came first.
+            self.pair = PairMemory::default();
+            self.pair.forget();
             findings.breach = findings.breach.or(Some(self.number));
         }
     }
 
     fn coasting<R: Rules>(&self, contract: &Contract, now: Instant) -> Bounds {
-        R::coast(contract, self.s, self.speed, now.seconds_since(self.at))
+        R::coast(contract, self.base, now.seconds_since(self.at))
     }
 
     /// What a shield's memory of precedence notes of it.
@@ -328,6 +380,14 @@ impl Other {
         let ahead = |zone: &&Zone| ego - spare < zone.ego.to && !R::left(zone, least);
         let zones = way.conflict(self.path)?.zones().filter(ahead);
         zones.map(|zone| zone.ego.from).reduce(f32::min)
+    }
+
+    /// Where (m) the ego enters the first zone ahead in which the other does not just keep its distance.
+    fn unsettled<R: Rules>(&self, way: Way<'_>, ego: f32) -> Option<f32> {
+        let ahead = |zone: &Zone| ego < zone.ego.to && !R::left(zone, self.bounds.s.from);
+        let zones = (0_u8..).zip(way.conflict(self.path)?.zones());
+        let open = zones.filter(|&(index, zone)| ahead(zone) && !self.is_settled(index));
+        open.map(|(_, zone)| zone.ego.from).reduce(f32::min)
     }
 
     /// Whether the ego is ahead of it in lane number `index`, and it keeps its distance.

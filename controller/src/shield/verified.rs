@@ -33,7 +33,7 @@ pub(crate) fn best<R: Rules>(
     let rest = departure.braking.rest(contract.ego.braking);
     let mut best = Verified {
         plan: Plan { go: 0 },
-        margin: R::stops_short(contract, hazards.nearest_limit(), rest),
+        margin: R::stops_short(contract, hazards.nearest_rest(), rest),
         passes: -FAR - FAR,
     };
     let mut passed = FAR;
@@ -49,7 +49,7 @@ pub(crate) fn best<R: Rules>(
         };
         let time = f32::from(plan.go) * contract.period;
         let rest = R::rest(contract, departure.most, time);
-        let margin = Real::min(passed, R::stops_short(contract, hazard.limit_beyond, rest));
+        let margin = Real::min(passed, R::stops_short(contract, hazard.rest_beyond, rest));
         if margin > best.margin {
             let passes = hazard.target;
             best = Verified {

@@ -9,6 +9,9 @@ use heapless::Vec;
 /// Two directions whose cosine is above this point the same way: within 30°.
 const PARALLEL: f32 = 0.866;
 
+/// Two directions whose cosine is below this come towards each other: more than 120° apart.
+const OPPOSITE: f32 = -0.5;
+
 /// A polygon in the (s, t) plane, both counted from the motions' starts.
 type Polygon = Vec<Point, 12>;
 
@@ -19,6 +22,8 @@ pub(super) struct Cell {
     pub(super) lead: Span,
     /// The two may point the same way.
     pub(super) parallel: bool,
+    /// They meet head-on.
+    pub(super) opposite: bool,
     /// An end of a route is in it.
     pub(super) end: bool,
 }
@@ -38,6 +43,7 @@ impl Cell {
                 to: ego.to - other.from + INFLATION,
             },
             parallel: parallel(a, b),
+            opposite: opposite(a, b),
             end: a.first || a.last || b.first || b.last,
         }
     }
@@ -46,6 +52,11 @@ impl Cell {
 /// Whether the vehicles point the same way. Turns do not count: they are in no lane.
 fn parallel(a: &Motion, b: &Motion) -> bool {
     !a.turning && !b.turning && a.direction.dot(&b.direction) > PARALLEL
+}
+
+/// Whether the vehicles come towards each other.
+fn opposite(a: &Motion, b: &Motion) -> bool {
+    a.direction.dot(&b.direction) < OPPOSITE
 }
 
 /// What of the two motions is occupied.
@@ -186,6 +197,7 @@ fn bounds(a: &Motion, b: &Motion, polygon: &Polygon) -> Option<Patch> {
         }),
         starts: parallel && starts,
         ends: parallel && ends,
+        mixed: opposite(a, b),
     })
 }
 

@@ -1,7 +1,7 @@
 //! The occupied polygons that hang together become one zone.
 
 use super::clip::Cell;
-use super::{FAR, MAX_ZONES, Span, Zone};
+use super::{FAR, MAX_ZONES, Span, WIDEST, Zone};
 use crate::junction::conflict::ConflictKind;
 
 /// Vehicles that touch while they point the same way share a lane if they do so over this distance (m).
@@ -19,6 +19,8 @@ pub(super) struct Patch {
     pub(super) starts: bool,
     /// They do so where a route ends.
     pub(super) ends: bool,
+    /// Who leads in it is not who is ahead: they meet head-on in it too, or it holds parts that do not hang together.
+    pub(super) mixed: bool,
 }
 
 impl Patch {
@@ -33,6 +35,7 @@ impl Patch {
             && holds(self.ego, cell.ego)
             && holds(self.other, cell.other)
             && holds(self.lead, cell.lead)
+            && (self.mixed || !cell.opposite)
             && (!cell.parallel || self.parallel.is_some_and(|known| holds(known, cell.ego)))
     }
 
@@ -46,11 +49,13 @@ impl Patch {
         };
         self.starts |= other.starts;
         self.ends |= other.ends;
+        self.mixed |= other.mixed;
     }
 
     /// The zone of vehicles that are `lengths` (m) long together.
     pub(super) fn zone(&self, lengths: f32) -> Zone {
-        let lane = self.parallel.is_some_and(|p| p.to - p.from >= LANE);
+        let narrow = self.lead.to - self.lead.from <= WIDEST * lengths;
+        let lane = !self.mixed && narrow && self.parallel.is_some_and(|p| p.to - p.from >= LANE);
         // A shared lane goes on past the end of the shorter route, for both.
         let end = |interval: Span| Span {
             to: if lane && self.ends { FAR } else { interval.to },
@@ -105,5 +110,6 @@ pub(super) fn insert(patches: &mut [Option<Patch>; MAX_ZONES], mut patch: Patch)
         *slot = Some(patch);
     } else if let Some(last) = patches.last_mut().and_then(Option::as_mut) {
         last.absorb(&patch);
+        last.mixed = true;
     }
 }

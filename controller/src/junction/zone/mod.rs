@@ -35,6 +35,10 @@ pub const FAR: f32 = 1.0e6;
 /// Every footprint is taken to be larger by this (m) on each side.
 pub const INFLATION: f32 = 0.02;
 
+/// A lane's band is at most this many times as wide as the two vehicles are long together: in a wider one, the one who
+/// is ahead along its route may be in front of the other.
+pub(crate) const WIDEST: f32 = 2.0;
+
 /// Zones whose intervals come as near as this (m) are one; also how near to a route's end its end is.
 const TOUCHING: f32 = 1.0e-3;
 
@@ -136,8 +140,9 @@ pub(crate) fn zones(ego: &Body<'_>, other: &Body<'_>) -> Zones {
     patches.map(|patch| patch.map(|patch| patch.zone(lengths)))
 }
 
-/// The zone of two vehicles on one route: a lane throughout, with a band that is the same for both.
-pub(crate) fn zone_with_itself(body: &Body<'_>) -> Zone {
+/// The zone of two vehicles on one route: a lane throughout, with a band that is the same for both. None if the route
+/// comes back to itself: then the one who is ahead along it may be in front of the other.
+pub(crate) fn zone_with_itself(body: &Body<'_>) -> Option<Zone> {
     let mut patches = [None; MAX_ZONES];
     // The half in which the ego is ahead is the same, mirrored.
     near_pieces(body, body, |a, b| {
@@ -158,11 +163,14 @@ pub(crate) fn zone_with_itself(body: &Body<'_>) -> Zone {
             widest
         }
     });
+    if widest > WIDEST * apart || patches.iter().flatten().any(|patch| patch.mixed) {
+        return None;
+    }
     let everywhere = Span {
         from: -FAR,
         to: FAR,
     };
-    Zone {
+    Some(Zone {
         ego: everywhere,
         other: everywhere,
         lead: Span {
@@ -170,7 +178,7 @@ pub(crate) fn zone_with_itself(body: &Body<'_>) -> Zone {
             to: widest,
         },
         kind: ConflictKind::Following,
-    }
+    })
 }
 
 /// Adds what is occupied on one segment of each route, and in the turns before it.

@@ -30,7 +30,7 @@ impl ContractBuilder {
         Self { numbers }
     }
 
-    /// Time from one decision to the next in s, in (0, 1].
+    /// Time from one decision to the next in s, in [0.01, 1].
     pub const fn period(mut self, period: f32) -> Self {
         self.numbers.period = period;
         self

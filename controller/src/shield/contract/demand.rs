@@ -105,7 +105,7 @@ const fn everywhere(contract: &Contract) -> [Demand; 15] {
     let late = ": a command takes effect before the next one is given, each up to two jitters early or late";
     // Whoever enters a lane ahead of another may do so sooner, and then slower, than planned.
     let keeps = ": it accelerates no harder than other.acceleration, and no harder than it or its follower brakes";
-    let fastest = ": it is no faster than the others, whom other.max_speed bounds";
+    let fastest = ": it is no faster than the others, and faster than what it gains before its limit holds it";
     let commanded = ": it goes no harder than ego.acceleration, the hardest that is commanded";
     // The gap to a leader is smallest at the end only if the leader can brake harder.
     let leader = ": it brakes no harder than other.braking, the hardest braking of a vehicle ahead";
@@ -114,9 +114,9 @@ const fn everywhere(contract: &Contract) -> [Demand; 15] {
     let (speed, acceleration) = (above(0.0, 100.0), above(0.0, 20.0));
     let brakes = larger(ego.braking, follower.braking);
     let launch = above(0.0, smaller(other.acceleration, brakes));
-    let (go, braking) = (above(0.0, ego.acceleration), above(0.0, other.braking));
+    let (go, braking) = (from(0.01, ego.acceleration), above(0.0, other.braking));
     [
-        ("period", contract.period, above(0.0, 1.0), ""),
+        ("period", contract.period, from(0.01, 1.0), ""),
         (
             "jitter",
             contract.jitter,
@@ -138,14 +138,14 @@ const fn everywhere(contract: &Contract) -> [Demand; 15] {
         ("follower.reaction", follower.reaction, reaction, ""),
         ("follower.braking", follower.braking, braking, hardest),
         ("ego.braking", ego.braking, braking, leader),
+        ("ego.acceleration", ego.acceleration, launch, keeps),
+        ("ego.go", ego.go, go, commanded),
         (
             "ego.max_speed",
             ego.max_speed,
-            above(0.0, other.max_speed),
+            above(held(contract), other.max_speed),
             fastest,
         ),
-        ("ego.acceleration", ego.acceleration, launch, keeps),
-        ("ego.go", ego.go, go, commanded),
     ]
 }
 
@@ -177,11 +177,17 @@ const fn of_turns(contract: &Contract, rule: Precedence) -> [Demand; 2] {
     ]
 }
 
+/// How far (m/s) below its limit the ego may be held back.
+const fn held(contract: &Contract) -> f32 {
+    let ego = contract.ego;
+    2.0 * contract.speed_error + ego.acceleration * contract.switching() + ego.go * contract.period
+}
+
 /// One that goes is seen: it gets faster, in spite of its limit, than one that may be taken for one at rest.
 const fn unseen(contract: &Contract) -> Option<ContractError> {
     let (ego, error) = (contract.ego, contract.speed_error);
     let rest = contract.rest_speed() + 2.0 * error;
-    let held = 2.0 * error + ego.acceleration * contract.switching() + ego.go * contract.period;
+    let held = held(contract);
     if rest < ego.max_speed - held {
         return None;
     }

@@ -191,7 +191,7 @@ impl Contract {
         ContractBuilder::new(self)
     }
 
-    /// Time from one decision to the next in s, in (0, 1].
+    /// Time from one decision to the next in s, in [0.01, 1].
     #[must_use]
     pub const fn period(&self) -> f32 {
         self.period
@@ -313,7 +313,7 @@ mod tests {
         let begins = |text: std::string::String, beginning: &str| {
             assert!(text.starts_with(beginning), "{text}");
         };
-        begins(worst(|c| c.period = 0.0), "period = 0 is outside (0, 1]");
+        begins(worst(|c| c.period = 0.0), "period = 0 is outside [0.01, 1]");
         begins(
             worst(|c| c.latency = 0.2),
             "latency = 0.2 is outside [0, 0.1]: ",
@@ -333,7 +333,7 @@ mod tests {
         );
         begins(
             worst(|c| c.ego.max_speed = 16.0),
-            "ego.max_speed = 16 is outside (0, 15]: ",
+            "ego.max_speed = 16 is outside (0.6",
         );
         begins(
             worst(|c| c.ego.braking = 9.0),
@@ -341,7 +341,7 @@ mod tests {
         );
         begins(
             worst(|c| c.ego.go = f32::NAN),
-            "ego.go = NaN is outside (0, 3]: ",
+            "ego.go = NaN is outside [0.01, 3]: ",
         );
         begins(
             worst(|c| c.other.braking = 21.0),

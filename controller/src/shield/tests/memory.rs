@@ -81,8 +81,8 @@ fn a_newcomer_voids_a_plan_only_if_its_own_zone_is_not_free() {
 /// Forgets whoever is not seen.
 struct Amnesia;
 impl Rules for Amnesia {
-    fn coast(contract: &Contract, _: f32, speed: f32, _: f32) -> Bounds {
-        Bounds::after(contract, 1e5, speed, 0.0)
+    fn coast(contract: &Contract, _: Bounds, _: f32) -> Bounds {
+        Bounds::sensed(contract, 1e5, 0.0)
     }
 }
 
@@ -323,4 +323,75 @@ fn a_contract_that_fears_no_more_keeps_the_plan_that_is_being_carried_out() {
     let bolder = WORST.to_builder().ego_braking(4.0).build().unwrap();
     run.shield.set_contract(bolder).unwrap();
     assert!(run.shield.replaced);
+}
+
+#[test]
+fn a_leader_in_a_queue_behind_a_kink_is_no_follower() {
+    // The kink makes the band of the lane wider than two vehicles are long.
+    let bent = route(&[(0.0, 0.0), (30.0, 0.0), (30.0, 60.0)]);
+    let site = site(&[bent.clone(), bent]);
+    for gap in [0.3_f32, 1.0, 1.9] {
+        let mut run = Run::new(&site, WORST);
+        let decision = run.decide([60.0, 0.0], &[(1, [65.0 + gap, 0.0])], 3.0);
+        assert!(decision.acceleration <= 0.0, "{gap} m: {decision}");
+        assert!(decision.margin < 2.0, "{gap} m: {decision}");
+    }
+}
+
+#[test]
+fn those_who_queue_behind_the_ego_take_nobodys_place() {
+    let site = site(&[east(), east(), north()]);
+    let mut run = Run::new(&site, WORST);
+    let behind = |i: u16| {
+        let place = on(&site, PathId::new(1), [50.0 - 5.5 * f32::from(i), 0.0]);
+        Track::on(10 + i, PathId::new(1), place)
+    };
+    let mut tracks: std::vec::Vec<_> = (1..=9).map(behind).collect();
+    tracks.push(track(&site, 2, [30.0, 5.0]));
+    for _ in 0..3 {
+        let decision = run.observe(ego(&site, [50.0, 0.0]), &tracks, 0.0);
+        assert_eq!(decision.unwatched, None);
+        assert!(
+            decision.plan.is_some() && decision.margin < 1e5,
+            "{decision:?}"
+        );
+    }
+}
+
+#[test]
+fn a_candidate_that_is_refused_leaves_nobody_out() {
+    let away = route(&[(0.0, -60.0), (0.0, -25.0), (50.0, -15.0)]);
+    let site = site(&[east(), north(), away]);
+    let mut run = Run::new(&site, WORST);
+    let crossing = on(&site, PathId::new(1), [40.0, 8.0]);
+    run.observe(
+        ego(&site, [30.0, 8.0]),
+        &[Track::on(7, PathId::new(1), crossing)],
+        -3.0,
+    );
+    // Reported on another path, with the pose of the old one.
+    let moved = on(&site, PathId::new(1), [40.8, 8.0]);
+    let decision = run.observe(
+        ego(&site, [30.8, 7.9]),
+        &[Track::on(7, PathId::new(2), moved)],
+        0.0,
+    );
+    assert!(decision.fault.is_some());
+    assert!(decision.margin < 1e5, "{decision:?}");
+}
+
+#[test]
+fn commands_that_follow_each_other_within_the_latency_may_all_still_act() {
+    let mut memory = Memory::new();
+    for (millis, command) in [(0, 2.0), (100, 1.0), (110, -3.0), (120, -2.0)] {
+        memory.command(&WORST, command, Instant::from_millis(millis));
+    }
+    assert_eq!(
+        memory.in_effect(&WORST, Instant::from_millis(130)),
+        [-3.0, 2.0]
+    );
+    assert_eq!(
+        memory.in_effect(&WORST, Instant::from_millis(220)),
+        [-2.0; 2]
+    );
 }
