@@ -1,6 +1,7 @@
 //! Encounters that are not driven.
 
-use cede_data::EncounterId;
+use cede_data::{Encounter, EncounterId};
+use cede_sim::Meeting;
 use cede_sim::evaluate::{Drive, Evaluation, Refused};
 use std::collections::BTreeSet;
 
@@ -17,6 +18,15 @@ impl LeftOut {
             }
         }
         evaluation.drives
+    }
+}
+
+/// Tells on stderr which of `encounters` are left out.
+pub(crate) fn tell(encounters: &[&Encounter]) {
+    for &encounter in encounters {
+        if let Err(why) = Meeting::new(encounter) {
+            eprintln!("left out: {}", words(&Refused { encounter, why }));
+        }
     }
 }
 

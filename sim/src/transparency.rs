@@ -41,7 +41,8 @@ impl Transparency {
 /// At every recorded step the ego is where it was, the other is, and the shield judges the acceleration
 /// that was recorded (limited to what the contract's ego can do), while the one before it is still in
 /// effect. Nothing is remembered from step to step and no precedence is assumed, so every step is
-/// judged against the worst case. Footprints are [`Footprint::PAPER`]'s.
+/// judged against the worst case. Footprints are the paper's. Encounters that are no junction
+/// ([`crate::Meeting::new`]) are left out.
 #[must_use]
 pub fn transparency(encounters: &[&Encounter], contract: Contract) -> Vec<Transparency> {
     let mut tables = tables(encounters, &[contract]);
@@ -116,12 +117,14 @@ fn table<'c>(counted: &(impl Iterator<Item = &'c Transparency> + Clone)) -> Vec<
     groups.map(total).filter(|t| t.steps > 0).collect()
 }
 
-/// What shields under each of `contracts` accept of one recorded drive: nothing, if the routes are no junction.
+/// What shields under each of `contracts` accept of one recorded drive; no steps, if the routes are no junction.
 fn count(contracts: &[Contract], encounter: &Encounter, role: Role) -> Vec<Transparency> {
     let mut counts = vec![Transparency::none(role, encounter.kind); contracts.len()];
     let (mine, theirs) = (role as usize, 1 - role as usize);
-    let junction = recorded(encounter).ok();
-    let enter = |&contract| Shield::<1>::enter(contract, junction.as_ref()?, path(mine)).ok();
+    let Ok(junction) = recorded(encounter) else {
+        return counts;
+    };
+    let enter = |&contract| Shield::<1>::enter(contract, &junction, path(mine)).ok();
     let shields: Vec<_> = contracts.iter().map(enter).collect();
     let vehicle = |participant: &Participant, sample: &Sample| {
         let state = State {

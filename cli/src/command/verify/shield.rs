@@ -1,6 +1,7 @@
 //! `cede verify shield`: the share of recorded steps that the shield accepts.
 
 use crate::failure::Failure;
+use crate::left_out;
 use crate::report::{Report, command};
 use crate::source::not_empty;
 use cede_controller::{ConflictKind, Contract, ContractBuilder};
@@ -39,6 +40,7 @@ impl Shield {
         let data = Dataset::load(&self.data, &self.site)?;
         not_empty(&data)?;
         let encounters: Vec<&Encounter> = data.encounters.iter().collect();
+        left_out::tell(&encounters);
         println!("contract          kind       role    steps  accepted");
         let mut worst = Vec::new();
         for (name, contract) in contracts() {
