@@ -145,7 +145,7 @@ fn who_starts_at_rest_takes_no_turns() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(ProptestConfig::with_cases(3000))]
 
     #[test]
     fn never_both_have_precedence(story in story()) {

@@ -89,7 +89,7 @@ prop_compose! {
         errors in [prop_oneof![Just(0.0_f32), 0.0_f32..0.3], prop_oneof![Just(0.0_f32), 0.0_f32..0.3]],
         right in 0_usize..3, starts in [-12.0_f32..3.0, -12.0_f32..3.0],
         manners in [manners(), manners()], seed in any::<u64>(),
-        phase in 0..GRAIN, jitter in prop_oneof![2 => Just(0), 1 => 1_usize..3],
+        phase in 0..GRAIN, jitter in prop_oneof![2 => Just(0), 1 => Just(1)],
         late in prop_oneof![2 => Just(0), 1 => 0_usize..120], misses in any::<bool>(),
     ) -> Story {
         use RightOfWay::{Ego, Other, Unsettled};
@@ -206,6 +206,8 @@ impl Caller {
         }
         if self.away > 0 {
             self.watcher.missed += u16::from(fault != Fault::Missed);
+            // Without a call it decides nothing, and goes on with what it decided.
+            self.watcher.claims = 0;
             return;
         }
         for dark in &mut self.dark {
