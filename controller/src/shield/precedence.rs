@@ -141,3 +141,6 @@ impl PairMemory {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

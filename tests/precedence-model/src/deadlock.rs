@@ -29,7 +29,7 @@ pub enum Kind {
     Late,
     /// Two who wait have no right of way, and arrived less than two periods apart.
     NoOrder,
-    /// The rights of those who wait form a cycle.
+    /// The rights of those who wait, or where there are none their arrivals, form a cycle.
     Cycle,
     /// Something else.
     Other,
@@ -40,7 +40,7 @@ impl fmt::Display for Kind {
         f.write_str(match self {
             Self::Late => "a shield was switched on at rest",
             Self::NoOrder => "no right of way, arrived less than two periods apart",
-            Self::Cycle => "rights of way in a cycle",
+            Self::Cycle => "rights of way and arrivals in a cycle",
             Self::Other => "something else",
         })
     }
@@ -132,7 +132,11 @@ pub fn kind<const N: usize>(story: &Story<N>, waits: [bool; N]) -> Kind {
         story.rights[one][two] == RightOfWay::Unsettled
             && story.arrives[one].abs_diff(story.arrives[two]) < 2
     };
-    let goes_before = |(one, two): (usize, usize)| story.rights[one][two] == RightOfWay::Ego;
+    let goes_before = |(one, two): (usize, usize)| match story.rights[one][two] {
+        RightOfWay::Ego => true,
+        RightOfWay::Other => false,
+        RightOfWay::Unsettled => story.arrives[one] + 2 <= story.arrives[two],
+    };
     let cycle = pairs().any(|(one, two)| {
         goes_before((one, two))
             && (0..N).any(|three| goes_before((two, three)) && goes_before((three, one)))

@@ -51,7 +51,11 @@ fn deadlocks<const N: usize>(within: u8) {
     let mut kinds = BTreeMap::new();
     for story in &stories {
         if let Some(waits) = deadlock::waits(&setting, story, 400) {
-            *kinds.entry(deadlock::kind(story, waits)).or_insert(0) += 1;
+            let kind = deadlock::kind(story, waits);
+            if kind == deadlock::Kind::Other {
+                println!("{story:?}: {waits:?}");
+            }
+            *kinds.entry(kind).or_insert(0) += 1;
         }
     }
     println!(

@@ -82,15 +82,15 @@ pub fn zone(disturbances: u8) -> Setting<2> {
     }
 }
 
-/// Calls are early or late by a step of a fifth of a period.
+/// Calls are early or late by a tenth of a period.
 #[must_use]
 pub fn jitter(disturbances: u8) -> Setting<2> {
     Setting {
-        phases: [0, 2],
+        phases: [0, 4],
         top: 1,
-        starts: [-9, -14],
-        arrive_by: 16,
-        ..turns(disturbances).jitter(5)
+        starts: [-14, -22],
+        arrive_by: 24,
+        ..turns(disturbances).jitter(10)
     }
 }
 

@@ -33,7 +33,7 @@ fn a_turn_of_three_that_does_not_end_is_found() {
 fn which_three_wait_for_ever_is_known() {
     use deadlock::Kind;
     let setting = Setting::<3>::new(10, 0);
-    for story in deadlock::stories::<3>(2) {
+    for story in deadlock::stories::<3>(3) {
         if let Some(waits) = deadlock::waits(&setting, &story, 200) {
             let kind = deadlock::kind(&story, waits);
             assert_ne!(kind, Kind::Other, "{story:?} {waits:?}");
