@@ -15,8 +15,9 @@ const POINTS: usize = 256;
 /// A junction of two paths, both of which can be entered.
 pub type Crossroads = Junction<2, POINTS>;
 
-/// As far (m) as a path of a [`Meeting`] goes: a little less than it may, for rounding.
-const REACH: f32 = MAX_PATH_LENGTH - 1.0;
+/// As far (m) as a path of a [`Meeting`] goes: a little less than it may, for rounding. A vehicle beyond that has left
+/// the junction, hundreds of metres past its record.
+pub const REACH: f32 = MAX_PATH_LENGTH - 1.0;
 
 /// Microseconds of a step of the simulation.
 const STEP_MICROS: u64 = 100_000;

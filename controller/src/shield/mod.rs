@@ -239,8 +239,8 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
                 other.pair.forget();
             }
         }
+        self.replaced |= !contract.keeps_plans_of(&self.contract);
         self.contract = contract;
-        self.replaced = true;
         Ok(())
     }
 

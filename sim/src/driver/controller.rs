@@ -1,9 +1,9 @@
 //! The controller itself, as a driver: the code that runs in the vehicle.
 
 use super::{Driver, DriverFactory, View};
-use crate::meeting::{Meeting, instant, path, sensed};
+use crate::meeting::{Meeting, REACH, instant, path, sensed};
 use crate::observation_model::Bystanders;
-use cede_controller::kinematics::MAX_ACCELERATION;
+use cede_controller::kinematics::{MAX_ACCELERATION, State};
 use cede_controller::{
     Approach, Cause, Contract, Decision, Drive, Fault, Observation, Part, Policy, Track,
     TrafficContext, Vehicle,
@@ -62,9 +62,10 @@ pub(super) struct Sensed {
 }
 
 impl Sensed {
-    /// What vehicle `view.ego` senses; `None` if it is not there itself.
+    /// What vehicle `view.ego` senses; `None` if it is not there itself, or has left the junction.
     pub(super) fn of(view: &View<'_>) -> Option<Self> {
-        let (own, state) = view.own()?;
+        let inside = |(_, state): &(&cede_data::Participant, State)| state.s < REACH;
+        let (own, state) = view.own().filter(inside)?;
         let index = 1_usize.checked_sub(view.ego)?;
         let rival = index as u16;
         let on = |(participant, state): (&cede_data::Participant, _)| {
@@ -73,7 +74,7 @@ impl Sensed {
         Some(Self {
             ego: sensed(&own.route, state),
             rival,
-            track: view.rival().map(on),
+            track: view.rival().filter(inside).map(on),
         })
     }
 

@@ -2,6 +2,10 @@
 
 use crate::setting::{Approach, Setting};
 
+/// Periods of patience: a turn of the first round must not be over before it is taken, by one who has
+/// perhaps rested a few periods longer than surely.
+const PATIENCE: u16 = 7;
+
 /// A search and its name.
 pub type Named<const N: usize> = (&'static str, Setting<N>);
 
@@ -33,7 +37,7 @@ pub fn turns(disturbances: u8) -> Setting<2> {
         arrive_by: 9,
         phases: [0, 1],
         disturbances,
-        ..Setting::new(5, 0).right(0, 1)
+        ..Setting::new(PATIENCE, 0).right(0, 1)
     }
 }
 
@@ -42,7 +46,7 @@ pub fn turns(disturbances: u8) -> Setting<2> {
 pub fn misses(disturbances: u8) -> Setting<2> {
     Setting {
         misses: true,
-        longest: 25,
+        longest: 4 * PATIENCE + 6,
         top: 1,
         ..turns(disturbances)
     }
@@ -55,7 +59,7 @@ pub fn late(disturbances: u8) -> Setting<2> {
         late: true,
         starts: [-7, -4],
         ..Setting {
-            rights: Setting::<2>::new(5, 0).rights,
+            rights: Setting::<2>::new(PATIENCE, 0).rights,
             ..turns(disturbances)
         }
     }
@@ -97,7 +101,7 @@ pub fn creeping(disturbances: u8) -> Setting<2> {
         approach: Approach::Creeping,
         starts: [-3, -3],
         top: 1,
-        longest: 12,
+        longest: PATIENCE + 6,
         disturbances: disturbances.saturating_sub(1),
         ..turns(disturbances)
     }
@@ -129,8 +133,12 @@ pub fn three(disturbances: u8) -> Vec<Named<3>> {
         phases: [0, 1, 0],
         arrive_by: 11,
         top: 1,
+        place_error: 0,
         disturbances,
-        ..Setting::new(5, 0).right(0, 1).right(1, 2).right(0, 2)
+        ..Setting::new(PATIENCE, 0)
+            .right(0, 1)
+            .right(1, 2)
+            .right(0, 2)
     };
     let late = Setting {
         late: true,

@@ -6,14 +6,14 @@ use cede_precedence_model::{Outcome, Watched, deadlock, search, setting::Setting
 use std::time::Duration;
 
 fn run<R: Rules + Send + Sync + 'static>(name: &str, model: Watched<3, R>) -> Outcome {
-    let outcome = search(model, 0, Duration::from_secs(120));
+    let outcome = search(model, 0, Duration::from_secs(40));
     println!("{name}: {outcome}");
     outcome
 }
 
 #[test]
 fn never_both_of_three() {
-    for (name, setting) in suite::three(0) {
+    for (name, setting) in suite::three(1) {
         let outcome = run(name, Watched::<3, Sound>::new(setting));
         assert!(outcome.is_sound(), "{outcome}\n{:?}", outcome.both);
     }

@@ -7,7 +7,7 @@ use cede_precedence_model::{Outcome, Watched, deadlock, search, suite};
 use std::time::Duration;
 
 fn run<R: Rules + Send + Sync + 'static>(name: &str, model: Watched<2, R>) -> Outcome {
-    let outcome = search(model, 0, Duration::from_secs(120));
+    let outcome = search(model, 0, Duration::from_secs(40));
     println!("{name}: {outcome}");
     outcome
 }
@@ -24,7 +24,7 @@ fn never_both_in_turns() {
 
 #[test]
 fn never_both_when_frames_and_calls_are_missed() {
-    let longest = 14;
+    let longest = 20;
     is_sound(
         "misses",
         Setting {
@@ -42,7 +42,7 @@ fn never_both_when_a_shield_starts_late() {
 
 #[test]
 fn never_both_in_spite_of_errors_of_speed() {
-    let longest = 10;
+    let longest = 12;
     is_sound(
         "noise",
         Setting {

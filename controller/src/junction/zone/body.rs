@@ -1,6 +1,7 @@
-//! A footprint that moves along a polyline, as motions without turning: straight ahead, and turns on the spot.
+//! A footprint that moves along a polyline, as motions without turning: straight ahead, and askew near its points.
 //!
-//! At a point where the polyline changes its direction a vehicle has all directions in between. Of a
+//! At a point where the polyline changes its direction a vehicle has all directions in between, and some of them before
+//! and after it ([`TURNING`]). Of a
 //! rectangle with half diagonal r that is turned by some angle, each point moves by |p|·|u − v| ≤ r·|u − v|,
 //! with u and v its directions before and after. So what it covers while its direction is
 //! within a distance d of u lies in the rectangle with direction u, inflated by r·d on every side.
@@ -19,6 +20,10 @@ const STEP: f32 = 0.0873;
 /// The most turns of half a change of direction: a right angle takes 2/[`STEP`].
 const MOST_TURNS: u8 = 23;
 
+/// A vehicle turns from one piece's direction to the next over this share of its length, before and after the point, and
+/// not beyond the pieces' other ends: on each side it has the directions from the piece's to half-way.
+const TURNING: f32 = 0.6;
+
 /// Sum of two directions below which they are taken for opposite.
 const OPPOSITE: f32 = 1.0e-3;
 
@@ -36,7 +41,7 @@ pub(crate) struct Body<'a> {
     radius: f32,
 }
 
-/// A vehicle that moves straight ahead without turning, or one that turns a little where it is.
+/// A vehicle that moves along a piece without turning: straight ahead, or askew while it is about to turn or has turned.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motion {
     pub(super) start: Point,
@@ -46,8 +51,9 @@ pub(super) struct Motion {
     pub(super) direction: Vector,
     /// Arc length at the start.
     pub(super) arc: f32,
-    /// Zero for a turn.
     pub(super) length: f32,
+    /// It points in a direction between two pieces'.
+    pub(super) turning: bool,
     pub(super) first: bool,
     pub(super) last: bool,
     /// Half the footprint's length and width, inflated.
@@ -57,9 +63,7 @@ pub(super) struct Motion {
 /// How the direction changes at a point of the polyline.
 #[derive(Clone, Copy)]
 struct Bend {
-    before: Vector,
     middle: Vector,
-    after: Vector,
     /// How far (m) corners move on the way from the middle direction to either side.
     sweep: f32,
 }
@@ -93,7 +97,7 @@ impl<'a> Body<'a> {
         self.footprint.length + 2.0 * self.inflation
     }
 
-    /// What moves on piece `i`, and at the point before it.
+    /// What moves on piece `i`.
     // Not inlined: it is long, and it is called from two places.
     #[inline(never)]
     pub(super) fn stage(&self, i: usize) -> Option<Stage> {
@@ -113,6 +117,7 @@ impl<'a> Body<'a> {
             direction: along,
             arc: piece.from,
             length: piece.to - piece.from,
+            turning: false,
             first: i == 0,
             last: i + 1 == self.polyline.pieces(),
             half: self.half(if sweeps.1 > sweeps.0 {
@@ -121,32 +126,24 @@ impl<'a> Body<'a> {
                 sweeps.0
             }),
         };
-        let arcs = before.map_or([None; 2], |bend| self.arcs(&bend));
-        Some(Stage { straight, arcs })
+        let window = smaller(TURNING * self.footprint.length, straight.length);
+        let starts = before.and_then(|bend| self.arc(&bend, [bend.middle, along]));
+        let ends = after.and_then(|bend| self.arc(&bend, [along, bend.middle]));
+        Some(Stage {
+            straight,
+            window,
+            arcs: [starts, ends],
+        })
     }
 
-    /// The arcs of directions that a bend is made of; none, if it is small.
-    fn arcs(&self, bend: &Bend) -> [Option<Arc>; 2] {
+    /// The directions of one half of a bend; none, if it is small.
+    fn arc(&self, bend: &Bend, [from, to]: [Vector; 2]) -> Option<Arc> {
         if bend.sweep <= SMALL_SWEEP {
-            return [None; 2];
+            return None;
         }
-        let arc = |from, to, middle| {
-            let mut arc = Arc::of(from, to, middle);
-            arc.half = self.half(self.radius * arc.spread);
-            arc
-        };
-        let Bend {
-            before,
-            middle,
-            after,
-            ..
-        } = *bend;
-        let whole = arc(before, after, middle);
-        if whole.turns == 1 {
-            return [Some(whole), None];
-        }
-        [(before, middle), (middle, after)]
-            .map(|(from, to)| Some(arc(from, to, self::middle(from, to))))
+        let mut arc = Arc::of(from, to, middle(from, to));
+        arc.half = self.half(self.radius * arc.spread);
+        Some(arc)
     }
 
     fn half(&self, sweep: f32) -> (f32, f32) {
@@ -161,9 +158,7 @@ impl<'a> Body<'a> {
     fn bend(&self, before: Vector, after: Vector) -> Bend {
         let middle = middle(before, after);
         Bend {
-            before,
             middle,
-            after,
             sweep: self.radius * length(&(middle - before)),
         }
     }
@@ -183,37 +178,47 @@ struct Arc {
     middle: Vector,
 }
 
-/// What moves on one piece of a polyline and at the point before it.
+/// What moves on one piece of a polyline.
 #[derive(Clone, Copy)]
 pub(super) struct Stage {
     straight: Motion,
+    /// The directions that a vehicle has besides, at the start of the piece and at its end, over `window` metres.
     arcs: [Option<Arc>; 2],
+    window: f32,
 }
 
 impl Stage {
-    /// The turns at the point, which together have all directions from the piece before to this one.
+    /// The motions of a vehicle that is about to turn or has turned. Together with those of the neighbouring pieces they
+    /// have all directions at each point.
     pub(super) fn turns(&self) -> impl Iterator<Item = Motion> {
-        let straight = self.straight;
-        self.arcs.into_iter().flatten().flat_map(move |arc| {
-            arc.directions().map(move |direction| Motion {
-                velocity: Vector::new(0.0, 0.0),
-                direction,
-                length: 0.0,
-                first: false,
-                last: false,
-                half: arc.half,
-                ..straight
+        let (straight, window) = (self.straight, self.window);
+        let offsets = [0.0, straight.length - window];
+        self.arcs
+            .into_iter()
+            .zip(offsets)
+            .filter_map(|(arc, offset)| Some((arc?, offset)))
+            .flat_map(move |(arc, offset)| {
+                arc.directions().map(move |direction| Motion {
+                    start: straight.start + straight.velocity * offset,
+                    direction,
+                    arc: straight.arc + offset,
+                    length: window,
+                    turning: true,
+                    first: false,
+                    last: false,
+                    half: arc.half,
+                    ..straight
+                })
             })
-        })
     }
 
-    /// Whether some turn at the point may touch something on a piece of another route.
+    /// Whether some turn on the piece may touch something on a piece of another route.
     pub(super) fn turns_near(&self, other: &Self) -> bool {
-        if self.arcs[0].is_none() {
+        if self.arcs.iter().all(Option::is_none) {
             return false;
         }
         let between = self.straight.start - other.straight.start;
-        let reach = other.straight.length + self.size() + other.size();
+        let reach = self.straight.length + other.straight.length + self.size() + other.size();
         between.dot(&between) <= reach * reach
     }
 
@@ -267,6 +272,10 @@ impl Arc {
     }
 }
 
+const fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
 /// The direction of a piece, of length 1 also where arc lengths are rounded.
 fn direction(piece: &Piece) -> Vector {
     let along = piece.end - piece.start;
@@ -314,7 +323,8 @@ mod tests {
             let route = Route::<3>::new(points.map(|(x, y)| Point::new(x, y))).unwrap();
             let body = Body::new(route.polyline(), Footprint { length, width }, 0.0);
             let before = *body.stage(0).unwrap().straight();
-            let at: std::vec::Vec<_> = body.stage(1).unwrap().turns().collect();
+            let mut at: std::vec::Vec<_> = body.stage(0).unwrap().turns().collect();
+            at.extend(body.stage(1).unwrap().turns());
             let after = *body.stage(1).unwrap().straight();
             let (sin, cos) = (share * turn.to_radians()).sin_cos();
             let corners = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)].map(|(x, y)| {

@@ -45,8 +45,7 @@ impl Cell {
 
 /// Whether the vehicles point the same way. Turns do not count: they are in no lane.
 fn parallel(a: &Motion, b: &Motion) -> bool {
-    let turn = a.length == 0.0 || b.length == 0.0;
-    !turn && a.direction.dot(&b.direction) > PARALLEL
+    !a.turning && !b.turning && a.direction.dot(&b.direction) > PARALLEL
 }
 
 /// What of the two motions is occupied.

@@ -25,8 +25,15 @@ fn heading(from: [f64; 2], to: [f64; 2]) -> f64 {
     (to[1] - from[1]).atan2(to[0] - from[0])
 }
 
-/// Places along the route, and several directions at each of its points.
-fn places(route: Polyline<'_>, step: f64) -> Vec<Place> {
+/// The change of direction from one heading to another, within ± π.
+fn turn(from: f64, to: f64) -> f64 {
+    use std::f64::consts::PI;
+    (to - from + 3.0 * PI).rem_euclid(2.0 * PI) - PI
+}
+
+/// Places along the route, with several directions at each of its points, and for a vehicle of `length` (m) that
+/// begins to turn before a point and has turned behind it.
+fn places(route: Polyline<'_>, step: f64, length: f64) -> Vec<Place> {
     let points: Vec<_> = route.points().iter().map(wide).collect();
     let arc: Vec<_> = route.arc().iter().map(|&s| f64::from(s)).collect();
     let mut found = Vec::new();
@@ -44,14 +51,44 @@ fn places(route: Polyline<'_>, step: f64) -> Vec<Place> {
             });
         }
         if let Some(&next) = points.get(i + 2) {
-            let turn = (heading(b, next) - along + 3.0 * std::f64::consts::PI)
-                .rem_euclid(2.0 * std::f64::consts::PI)
-                - std::f64::consts::PI;
+            let turn = turn(along, heading(b, next));
             found.extend((1..16).map(|k| Place {
                 s: to,
                 at: b,
                 heading: along + turn * f64::from(k) / 16.0,
             }));
+        }
+    }
+    found.extend(turning(&points, &arc, length));
+    found
+}
+
+/// Places beside the route's points at which a vehicle of `length` (m) has the direction half-way to the next piece's,
+/// or some of it.
+fn turning(points: &[[f64; 2]], arc: &[f64], length: f64) -> Vec<Place> {
+    let mut found = Vec::new();
+    for i in 1..points.len() - 1 {
+        let [before, at, after] = [points[i - 1], points[i], points[i + 1]];
+        let change = turn(heading(before, at), heading(at, after));
+        for (towards, piece, sign) in [
+            (before, arc[i] - arc[i - 1], -1.0),
+            (after, arc[i + 1] - arc[i], 1.0),
+        ] {
+            let window = (0.59 * length).min(piece);
+            let own = if sign < 0.0 {
+                heading(before, at)
+            } else {
+                heading(at, after)
+            };
+            for k in 0..8 {
+                let away = window * f64::from(k) / 7.0;
+                let share = away / piece;
+                found.extend([0.2, 0.5, 0.99].map(|part| Place {
+                    s: arc[i] + sign * away,
+                    at: [0, 1].map(|c| at[c] + (towards[c] - at[c]) * share),
+                    heading: own - sign * 0.5 * part * change,
+                }));
+            }
         }
     }
     found
@@ -98,7 +135,10 @@ fn missed(
         let route = junction.polyline(id(i)).unwrap();
         let footprint = junction.paths()[i].footprint();
         let shaped = |place| (place, shape(&place, footprint, offset));
-        let placed: Vec<_> = places(route, 0.7).into_iter().map(shaped).collect();
+        let placed: Vec<_> = places(route, 0.7, footprint.length.into())
+            .into_iter()
+            .map(shaped)
+            .collect();
         placed
     });
     let (mut found, mut count) = (Vec::new(), 0);

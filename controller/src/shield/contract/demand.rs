@@ -135,6 +135,9 @@ const fn everywhere(contract: &Contract) -> [Demand; 15] {
         ("other.max_speed", other.max_speed, speed, ""),
         ("other.acceleration", other.acceleration, acceleration, ""),
         ("other.braking", other.braking, acceleration, ""),
+        ("follower.reaction", follower.reaction, reaction, ""),
+        ("follower.braking", follower.braking, braking, hardest),
+        ("ego.braking", ego.braking, braking, leader),
         (
             "ego.max_speed",
             ego.max_speed,
@@ -143,9 +146,6 @@ const fn everywhere(contract: &Contract) -> [Demand; 15] {
         ),
         ("ego.acceleration", ego.acceleration, launch, keeps),
         ("ego.go", ego.go, go, commanded),
-        ("ego.braking", ego.braking, braking, leader),
-        ("follower.reaction", follower.reaction, reaction, ""),
-        ("follower.braking", follower.braking, braking, hardest),
     ]
 }
 

@@ -58,7 +58,8 @@ pub struct Contract {
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Ego {
-    /// No command accelerates the ego beyond this speed, in m/s, in (0, the others' `max_speed`].
+    /// No command accelerates the ego beyond this speed, in m/s, in (0, the others' `max_speed`]; one that is given
+    /// while the ego's own state is missing may, by what is then not known of its speed.
     /// A limiter may keep the vehicle from going faster, and errs by `speed_error` at most. The guarantee holds with
     /// a limiter and without one.
     pub max_speed: f32,
@@ -126,6 +127,17 @@ pub struct Precedence {
 }
 
 impl Precedence {
+    /// A rule of one's own; [`ContractBuilder::build`] checks its numbers.
+    #[must_use]
+    pub const fn new(distance: f32, tie: u16, braking: f32, patience: u16) -> Self {
+        Self {
+            distance,
+            tie,
+            braking,
+            patience,
+        }
+    }
+
     /// An all-way stop: 12 m, half a second, 3 m/s², and turns of 1.5 s, 3 s, 6 s, …
     pub const ALL_WAY_STOP: Self = Self {
         distance: 12.0,
@@ -251,6 +263,24 @@ impl Contract {
     #[must_use]
     pub const fn precedence(&self) -> Option<Precedence> {
         self.precedence
+    }
+
+    /// Whether a plan that is safe under `former` is safe under this contract: the ego acts the same, and less is to be
+    /// feared of everybody else.
+    pub(super) fn keeps_plans_of(&self, former: &Self) -> bool {
+        let same = self.ego == former.ego
+            && self.period == former.period
+            && self.slack == former.slack
+            && self.precedence == former.precedence;
+        let timing = self.latency <= former.latency && self.jitter <= former.jitter;
+        let errors =
+            self.position_error <= former.position_error && self.speed_error <= former.speed_error;
+        let others = self.other.max_speed <= former.other.max_speed
+            && self.other.acceleration <= former.other.acceleration
+            && self.other.braking <= former.other.braking;
+        let follower = self.follower.reaction <= former.follower.reaction
+            && self.follower.braking >= former.follower.braking;
+        same && timing && errors && others && follower
     }
 
     /// The speed (m/s) up to which a vehicle counts as one at rest: a quarter of what `go` gives in a period.

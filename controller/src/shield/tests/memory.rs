@@ -299,3 +299,28 @@ fn one_that_has_left_its_zone_is_no_newcomer_however_its_sensors_err() {
         assert_eq!(decision.breach, None);
     }
 }
+
+#[test]
+fn a_contract_that_fears_no_more_keeps_the_plan_that_is_being_carried_out() {
+    let site = crossing();
+    let mut run = Run::new(&site, WORST);
+    committed(&mut run);
+    // What is seen is worse than what the plan was verified for, by less than a breach.
+    let decision = run.decide(NEXT, &[(1, [10.51, 5.005])], 0.0);
+    assert!(decision.plan.is_some());
+    for contract in [
+        WORST,
+        WORST
+            .to_builder()
+            .other_max_speed(15.0)
+            .follower_reaction(0.4)
+            .build()
+            .unwrap(),
+    ] {
+        run.shield.set_contract(contract).unwrap();
+        assert!(!run.shield.replaced);
+    }
+    let bolder = WORST.to_builder().ego_braking(4.0).build().unwrap();
+    run.shield.set_contract(bolder).unwrap();
+    assert!(run.shield.replaced);
+}
