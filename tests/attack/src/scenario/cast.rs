@@ -129,7 +129,7 @@ impl Cast {
                 _ => numbers.other.speed,
             },
             takeover: rng.pick(&Takeover::ALL),
-            sway: Sway::random(site.tolerance, site.lanes[lane].size.radius(), rng),
+            sway: Sway::random(site.tolerance, site.lanes[lane].size, rng),
         }
     }
 
