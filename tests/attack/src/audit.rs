@@ -2,13 +2,16 @@
 
 use crate::plane::{Place, direction, minus, norm, separation};
 use crate::rng::Rng;
+use crate::scenario::{Family, SHARE};
 use crate::site::{Area, Lane, Site};
 use crate::sway::Sway;
+use rayon::prelude::*;
 
 /// How a vehicle's heading follows its lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Heading {
-    /// That of its lane, to within the tolerance; through kinks all directions in between, on the spot.
+    /// That of its lane, to within the tolerance; before and after kinks all directions in between, as near to them as the
+    /// junction allows.
     Lane,
     /// That of the chord from so many metres behind it to as many ahead: it turns before a kink and after it.
     Chord(f64),
@@ -43,10 +46,9 @@ pub fn uncovered(
     let mut worst: Option<Gap> = None;
     for _ in 0..starts {
         let mut at = start(lanes, areas, rng);
-        let sways = lanes.map(|lane| Sway::random(site.tolerance, lane.size.radius(), rng));
-        let shares = [rng.unit(), rng.unit()];
+        let sways = lanes.map(|lane| Sway::random(site.tolerance, lane.size, rng));
         let gap = |at: [f64; 2]| {
-            let [p, q] = [0, 1].map(|i| place(lanes[i], at[i], heading, shares[i], sways[i]));
+            let [p, q] = [0, 1].map(|i| place(lanes[i], at[i], heading, sways[i]));
             separation(p, lanes[0].size, q, lanes[1].size)
         };
         let free = |at: [f64; 2]| inside(lanes, at) && !covered(areas, at);
@@ -70,6 +72,57 @@ pub fn uncovered(
     worst
 }
 
+/// What was found on the sites of one family.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Found {
+    /// Pairs of lanes.
+    pub pairs: u64,
+    /// Those with an overlap outside of all zones.
+    pub gaps: u64,
+    /// The deepest: seed of its site, lanes, gap.
+    pub deepest: Option<(u64, [usize; 2], Gap)>,
+}
+
+impl Found {
+    fn plus(self, other: Self) -> Self {
+        let deepest = match (self.deepest, other.deepest) {
+            (Some(a), Some(b)) => Some(if a.2.depth >= b.2.depth { a } else { b }),
+            (a, b) => a.or(b),
+        };
+        Self {
+            pairs: self.pairs + other.pairs,
+            gaps: self.gaps + other.gaps,
+            deepest,
+        }
+    }
+}
+
+/// Searches the sites of the scenarios from `seed` on.
+#[must_use]
+pub fn of_family(family: &Family, seed: u64, sites: u64, starts: u32) -> Found {
+    let seeds = (0..sites).into_par_iter().map(|i| seed + i * SHARE);
+    let found = seeds.map(|seed| {
+        let site = family.site(seed);
+        site.map_or_else(Found::default, |site| of_site(&site, seed, starts))
+    });
+    found.reduce(Found::default, Found::plus)
+}
+
+fn of_site(site: &Site, seed: u64, starts: u32) -> Found {
+    let mut rng = Rng::new(seed);
+    let mut found = Found::default();
+    let count = site.lanes.len();
+    for (a, b) in (0..count).flat_map(|a| (0..count).map(move |b| (a, b))) {
+        let gap = uncovered(site, (a, b), Heading::Lane, starts, &mut rng);
+        found = found.plus(Found {
+            pairs: 1,
+            gaps: u64::from(gap.is_some()),
+            deepest: gap.map(|gap| (seed, [a, b], gap)),
+        });
+    }
+    found
+}
+
 fn inside(lanes: [&Lane; 2], at: [f64; 2]) -> bool {
     (0..2).all(|i| (0.0..=lanes[i].line.length()).contains(&at[i]))
 }
@@ -88,7 +141,7 @@ fn start(lanes: [&Lane; 2], areas: &[Area], rng: &mut Rng) -> [f64; 2] {
         let lane = lanes[i];
         let edge = |area: &Area| if i == 0 { area.ego } else { area.other };
         match rng.below(4) {
-            0 if !lane.kinks.is_empty() => lane.kinks[rng.below(lane.kinks.len())].s,
+            0 => lane.line.arc()[rng.below(lane.line.arc().len())] + rng.within(-0.3, 0.3),
             1 | 2 if !areas.is_empty() => {
                 let edge = edge(&areas[rng.below(areas.len())])[rng.below(2)];
                 edge.clamp(0.0, lane.line.length()) + rng.within(-0.15, 0.15)
@@ -99,24 +152,14 @@ fn start(lanes: [&Lane; 2], areas: &[Area], rng: &mut Rng) -> [f64; 2] {
     [one(0, rng), one(1, rng)]
 }
 
-fn place(lane: &Lane, s: f64, heading: Heading, share: f64, sway: Sway) -> Place {
-    match heading {
-        Heading::Lane => {
-            let kink = lane.kinks.iter().find(|kink| kink.s == s);
-            let nominal = match kink {
-                Some(kink) => Place {
-                    at: lane.line.place(s).at,
-                    to: kink.between(share),
-                },
-                None => lane.line.turning_place(s, lane.gentle),
-            };
-            sway.displace(nominal, s)
-        }
-        Heading::Chord(reach) => {
-            let at = lane.line.place(s).at;
-            let chord = minus(lane.line.place(s + reach).at, lane.line.place(s - reach).at);
-            let to = if norm(chord) > 1e-6 { direction(chord) } else { lane.line.place(s).to };
-            Place { at, to }
-        }
+fn place(lane: &Lane, s: f64, heading: Heading, sway: Sway) -> Place {
+    let Heading::Chord(reach) = heading else {
+        return sway.place(&lane.line, s);
+    };
+    let at = |s: f64| lane.line.place(s);
+    let chord = minus(at(s + reach).at, at(s - reach).at);
+    Place {
+        at: at(s).at,
+        to: if norm(chord) > 1e-6 { direction(chord) } else { at(s).to },
     }
 }

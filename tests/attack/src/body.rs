@@ -17,8 +17,6 @@ pub struct Body {
     pub lane: usize,
     /// Its motion.
     pub state: State,
-    /// Arc length one tick ago.
-    pub before: f64,
     /// Where it is beside its lane.
     pub sway: Sway,
     /// It does not accelerate beyond this speed.
@@ -34,7 +32,6 @@ pub struct Body {
 impl Body {
     /// Moves for one tick at `acceleration`.
     pub fn go(&mut self, site: &Site, acceleration: f64) {
-        self.before = self.state.s;
         self.felt = acceleration;
         self.state = self.state.after(acceleration, TICK, self.cap);
         self.gone = self.state.s > site.lanes[self.lane].line.length() - END;
@@ -47,7 +44,6 @@ impl Body {
             lane: &site.lanes[self.lane],
             sway: self.sway,
             state: self.state,
-            before: self.before,
         }
     }
 

@@ -16,7 +16,7 @@ const LONGEST: f64 = 50.0;
 
 /// Ticks in which two vehicles that are `gap` m apart cannot touch.
 fn free_ticks(gap: f64, seen: [Seen<'_>; 2]) -> u64 {
-    // A kink moves corners at once.
+    // A kink moves corners within a short way.
     let [a, b] = seen.map(|seen| seen.lane.jump);
     let closing = CORNERS * (seen[0].state.v + seen[1].state.v + FASTER);
     let ticks = (gap - a - b) / (closing * TICK);
@@ -32,29 +32,13 @@ pub struct Seen<'s> {
     pub sway: Sway,
     /// Its motion.
     pub state: State,
-    /// Arc length one tick ago.
-    pub before: f64,
 }
 
-impl<'s> Seen<'s> {
-    /// Where it is; through gentle bends it turns steadily.
+impl Seen<'_> {
+    /// Where it is.
     #[must_use]
     pub fn place(&self) -> Place {
-        let s = self.state.s;
-        self.sway.displace(self.lane.line.turning_place(s, self.lane.gentle), s)
-    }
-
-    /// Where it was in between if it turned on the spot in this tick.
-    fn turns(self) -> impl Iterator<Item = Place> + use<'s> {
-        let passed = move |s: f64| self.before < s && s <= self.state.s;
-        let kinks = self.lane.kinks.iter().filter(move |kink| passed(kink.s));
-        kinks.flat_map(move |kink| {
-            let at = self.lane.line.place(kink.s).at;
-            (0..=6).map(move |i| {
-                let to = kink.between(f64::from(i) / 6.0);
-                self.sway.displace(Place { at, to }, kink.s)
-            })
-        })
+        self.sway.place(&self.lane.line, self.state.s)
     }
 }
 
@@ -88,13 +72,7 @@ impl Judge {
         let [one, two] = seen;
         let (sa, sb) = (one.lane.size, two.lane.size);
         let (pa, pb) = (one.place(), two.place());
-        let mut gap = separation(pa, sa, pb, sb);
-        for place in one.turns() {
-            gap = gap.min(separation(place, sa, pb, sb));
-        }
-        for place in two.turns() {
-            gap = gap.min(separation(pa, sa, place, sb));
-        }
+        let gap = separation(pa, sa, pb, sb);
         *next = tick + 1 + free_ticks(gap, [one, two]);
         self.closest = self.closest.min(gap);
         gap < 0.0

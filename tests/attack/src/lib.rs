@@ -1,4 +1,47 @@
 //! An attacker of the safety shield that shares nothing with the simulator.
+//!
+//! It has kinematics, geometry, error models, adversaries and random numbers of its own, in f64. Of the project it knows
+//! the controller alone: its interface, the numbers of a contract, and the zones that a junction states. Every
+//! scenario keeps the contract, so that an overlap, a breach or a fault that is reported, or a decision without a plan after
+//! the first verified one is the shield's fault.
+//!
+//! | | |
+//! |---|---|
+//! | [`plane`], [`polyline`], [`motion`] | rectangles, ways, pieces of constant acceleration |
+//! | [`actuator`], [`error`], [`sight`], [`sway`] | what the contract allows: latency, errors, gaps, offsets |
+//! | [`human`] | adversaries, and what they owe |
+//! | [`sketch`], [`site`], [`audit`] | random ways, the junctions that they make, whether zones cover them |
+//! | [`scenario`], [`world`], [`judge`] | families of scenarios, one scenario, who touches whom |
+//! | [`campaign`], [`search`] | scenarios by the million, and by cross entropy |
+//! | [`mutants`] | shields with one broken rule, which are caught |
+//! | [`outside`], [`plain`] | just outside of the contract, beside a plain rule |
+//!
+//! # What no test can show
+//!
+//! Some findings do not compile any more. A shield cannot be kept for the next intersection, because it borrows its junction:
+//!
+//! ```compile_fail,E0505
+//! use cede_controller::{Contract, Junction, PathId, Shield};
+//!
+//! fn keep(first: Junction<2, 16>, path: PathId) {
+//!     let shield = Shield::<8>::enter(Contract::WORST_CASE, &first, path);
+//!     drop(first);
+//!     let _ = shield;
+//! }
+//! ```
+//!
+//! Weights cannot be changed after they have been validated, because their fields are private:
+//!
+//! ```compile_fail,E0616
+//! use cede_controller::{FeatureSet, Weights, WeightsError};
+//!
+//! fn changed<'a>(words: &'a [u32]) -> Result<Weights<'a>, WeightsError> {
+//!     let mut weights = Weights::parse(words)?;
+//!     weights.features = FeatureSet::Raw;
+//!     Ok(weights)
+//! }
+//! ```
+
 pub mod actuator;
 pub mod campaign;
 pub mod audit;

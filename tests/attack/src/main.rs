@@ -21,6 +21,7 @@ enum Command {
     Replay(command::replay::Args),
     Sharp(command::sharp::Args),
     Outside(command::outside::Args),
+    Zones(command::zones::Args),
     /// Lists the families of scenarios.
     Families,
 }
@@ -31,6 +32,7 @@ fn main() -> ExitCode {
         Command::Replay(args) => args.run(),
         Command::Sharp(args) => args.run(),
         Command::Outside(args) => args.run(),
+        Command::Zones(args) => args.run(),
         Command::Families => command::families(),
     };
     if held { ExitCode::SUCCESS } else { ExitCode::FAILURE }

@@ -11,9 +11,6 @@ pub struct Polyline {
     directions: Vec<V2>,
 }
 
-/// A vehicle that cannot turn on the spot turns within so many metres before and after a kink.
-const TURNING: f64 = 0.25;
-
 impl Polyline {
     /// Through `points`, at least two and apart from each other.
     ///
@@ -79,10 +76,11 @@ impl Polyline {
         }
     }
 
-    /// The place at `s` of a vehicle that turns steadily on its way through a kink instead of all at once, if the kink's
-    /// cosine is at least `gentle`.
+    /// The place at `s` of a vehicle that turns through a kink on its way from `reach` metres before it to as many after
+    /// it, on either side at most to the middle of the segment. At the kink it has turned by half; with an `ease` of 1 it
+    /// turns steadily, with a smaller one most of it where it begins and ends.
     #[must_use]
-    pub fn turning_place(&self, s: f64, gentle: f64) -> Place {
+    pub fn turning_place(&self, s: f64, reach: f64, ease: f64) -> Place {
         let i = self.segment(s);
         let here = Place {
             at: along(self.points[i], self.directions[i], s - self.arc[i]),
@@ -90,19 +88,17 @@ impl Polyline {
         };
         let half = 0.5 * (self.arc[i + 1] - self.arc[i]);
         let into = s - self.arc[i];
-        if into < half {
-            self.blended(here, i.checked_sub(1), into / TURNING.min(half), gentle)
+        let (towards, away) = if into < half {
+            (i.checked_sub(1), into)
         } else {
-            let next = Some(i + 1).filter(|&next| next < self.directions.len());
-            self.blended(here, next, (2.0 * half - into) / TURNING.min(half), gentle)
-        }
-    }
-
-    /// Turned halfway to the segment `towards` where `away` from it is 0, not at all where it is 1.
-    fn blended(&self, here: Place, towards: Option<usize>, away: f64, gentle: f64) -> Place {
-        match towards.map(|other| self.directions[other]) {
-            Some(other) if (0.0..1.0).contains(&away) && dot(here.to, other) >= gentle => {
-                let mixed = along(here.to, other, (1.0 - away) / (1.0 + away));
+            (Some(i + 1), 2.0 * half - into)
+        };
+        let away = away / reach.min(half);
+        match towards.and_then(|other| self.directions.get(other)) {
+            Some(&other) if (0.0..1.0).contains(&away) => {
+                let share = if ease == 1.0 { 1.0 - away } else { (1.0 - away).powf(ease) };
+                // Of two unit vectors, 1 to 1 is halfway.
+                let mixed = along(here.to, other, share / (2.0 - share));
                 Place {
                     to: direction(mixed),
                     ..here
@@ -145,13 +141,17 @@ mod tests {
         assert_eq!(line.place(12.0).at, [10.0, 2.0]);
         assert_eq!(line.place(-1.0).at, [-1.0, 0.0]);
         assert_eq!(line.place(17.0).at, [10.0, 7.0]);
-        let angle = |s: f64| {
-            let to = line.turning_place(s, -0.5).to;
+        let angle = |s: f64, ease: f64| {
+            let to = line.turning_place(s, 0.25, ease).to;
             to[1].atan2(to[0]).to_degrees()
         };
-        assert!((angle(10.0 - 1e-9) - 45.0).abs() < 1e-3 && (angle(10.0) - 45.0).abs() < 1e-3);
-        assert!(angle(9.5) == 0.0 && angle(9.9) > 0.0 && angle(10.1) < 90.0);
-        assert_eq!(line.turning_place(9.9, 0.5), line.place(9.9));
+        for ease in [1.0, 0.2] {
+            assert!((angle(10.0 - 1e-9, ease) - 45.0).abs() < 1e-3);
+            assert!((angle(10.0, ease) - 45.0).abs() < 1e-3);
+            assert!(angle(9.5, ease) == 0.0 && angle(10.5, ease) == 90.0);
+            assert!(angle(9.9, ease) > 0.0 && angle(10.1, ease) < 90.0);
+        }
+        assert!(angle(9.8, 0.2) > 2.0 * angle(9.8, 1.0));
         assert!((line.project([9.0, 2.5]) - 12.5).abs() < 1e-12);
         assert!((line.sharpest().to_degrees() - 90.0).abs() < 1e-9);
     }

@@ -1,7 +1,7 @@
 //! A place where ways meet: the attacker's own polylines beside the junction that the controller is given.
 
 use crate::numbers::Numbers;
-use crate::plane::{Size, V2, dot};
+use crate::plane::Size;
 use crate::polyline::Polyline;
 use crate::rng::Rng;
 use crate::sketch::{Kind, Way};
@@ -30,25 +30,6 @@ pub struct Leg {
     pub length: f64,
 }
 
-/// A point at which a lane turns by much.
-#[derive(Clone, Copy, Debug)]
-pub struct Kink {
-    /// Arc length.
-    pub s: f64,
-    /// Direction before and after it.
-    pub directions: [V2; 2],
-}
-
-impl Kink {
-    /// The direction after this share of the turn.
-    #[must_use]
-    pub fn between(&self, share: f64) -> V2 {
-        let [from, to] = self.directions;
-        let bend = dot(crate::plane::left(from), to).atan2(dot(from, to));
-        crate::plane::turned(from, share * bend)
-    }
-}
-
 /// Where vehicles of one size drive.
 #[derive(Clone, Debug)]
 pub struct Lane {
@@ -62,10 +43,6 @@ pub struct Lane {
     pub legs: Vec<Leg>,
     /// Lanes with the same number begin alike.
     pub entry: usize,
-    /// Points at which a vehicle that stays on the lane turns on the spot.
-    pub kinks: Vec<Kink>,
-    /// Through bends with at least this cosine it turns steadily, a little before and after.
-    pub gentle: f64,
     /// No kink moves a corner by more than this, in m.
     pub jump: f64,
 }
@@ -119,33 +96,12 @@ impl From<JunctionError> for Refusal {
     }
 }
 
-/// What a junction's builder makes of a smaller bend: its pieces are larger by so much (m), so that a vehicle may turn
-/// anywhere near it.
-const SMALL_SWEEP: f64 = 0.029;
-
 fn class(kind: Kind) -> Class {
     match kind {
         Kind::Car => Class::Car,
         Kind::Lorry => Class::Lorry,
         Kind::Bicycle => Class::Bicycle,
     }
-}
-
-/// The cosine of the largest bend in which half of the turn moves no corner by more than [`SMALL_SWEEP`].
-fn gentle(radius: f64) -> f64 {
-    (4.0 * (0.5 * SMALL_SWEEP / radius).min(1.0).asin()).cos()
-}
-
-fn kinks(line: &Polyline, gentle: f64) -> Vec<Kink> {
-    let directions = line.directions();
-    let pairs = directions.windows(2).zip(line.arc().iter().skip(1));
-    let sharp = pairs.filter(|(pair, _)| dot(pair[0], pair[1]) < gentle);
-    sharp
-        .map(|(pair, &s)| Kink {
-            s,
-            directions: [pair[0], pair[1]],
-        })
-        .collect()
 }
 
 impl Site {
@@ -261,10 +217,7 @@ impl Site {
 
 fn lane(way: &Way) -> Lane {
     let line = Polyline::new(&way.points);
-    let gentle = gentle(way.size.radius());
     Lane {
-        kinks: kinks(&line, gentle),
-        gentle,
         jump: 2.0 * way.size.radius() * (0.5 * line.sharpest()).sin(),
         line,
         size: way.size,

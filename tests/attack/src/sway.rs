@@ -1,36 +1,64 @@
-//! Where a vehicle is beside its route, within the junction's tolerance.
+//! Where a vehicle is beside its route, and how it turns, within what the junction allows.
 
-use crate::plane::{Place, along, direction, left};
+use crate::plane::{Place, Size, along, direction, left};
+use crate::polyline::Polyline;
 use crate::rng::Rng;
 
 /// A steady offset to the side and a turn, which together move no point of the footprint farther than the
 /// tolerance.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sway {
     aside: f64,
     /// Tangent of the angle.
     turn: f64,
     /// Metres of arc length from one side to the other and back; 0: always on the same side.
     wave: f64,
+    /// It turns from so many metres before a kink to as many after it.
+    reach: f64,
+    /// See [`Polyline::turning_place`].
+    ease: f64,
+}
+
+/// A junction allows a vehicle to turn within so much of its length before and after a kink.
+const TURNING: f64 = 0.6;
+
+impl Default for Sway {
+    /// Never beside its route; it turns within 10 cm.
+    fn default() -> Self {
+        Self {
+            aside: 0.0,
+            turn: 0.0,
+            wave: 0.0,
+            reach: 0.1,
+            ease: 1.0,
+        }
+    }
 }
 
 impl Sway {
-    /// One of a vehicle whose corners are `radius` m from its centre; the whole of the `tolerance` is used.
+    /// One of a vehicle of this `size`; the whole of the `tolerance` is used.
     #[must_use]
-    pub fn random(tolerance: f64, radius: f64, rng: &mut Rng) -> Self {
+    pub fn random(tolerance: f64, size: Size, rng: &mut Rng) -> Self {
         let share = rng.pick(&[0.0, 0.0, 1.0, 1.0, 0.5]);
         let (aside, turned) = (tolerance * (1.0 - share), tolerance * share);
         Self {
             aside: 0.99 * aside * rng.sign(),
             // A turn by x moves a corner by 2 r sin(x / 2) ≤ r tan x.
-            turn: 0.99 * turned / radius * rng.sign(),
+            turn: 0.99 * turned / size.radius() * rng.sign(),
             wave: rng.pick(&[0.0, 0.0, 10.0, 30.0]),
+            reach: TURNING * size.length * rng.pick(&[0.02, 0.5, 0.99, 0.99]),
+            ease: rng.pick(&[1.0, 1.0, 0.2]),
         }
     }
 
-    /// Where a vehicle is whose place on its route at arc length `s` is `nominal`.
+    /// Where a vehicle is at arc length `s` of its lane `line`.
     #[must_use]
-    pub fn displace(&self, nominal: Place, s: f64) -> Place {
+    pub fn place(&self, line: &Polyline, s: f64) -> Place {
+        self.displace(line.turning_place(s, self.reach, self.ease), s)
+    }
+
+    /// Where a vehicle is whose place on its route at arc length `s` is `nominal`.
+    fn displace(&self, nominal: Place, s: f64) -> Place {
         if self.aside == 0.0 && self.turn == 0.0 {
             return nominal;
         }
@@ -50,7 +78,7 @@ impl Sway {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plane::{Size, minus, norm};
+    use crate::plane::{minus, norm};
 
     #[test]
     fn no_corner_leaves_the_tolerance() {
@@ -61,7 +89,7 @@ mod tests {
         let mut rng = Rng::new(6);
         let mut worst = 0.0_f64;
         for _ in 0..200 {
-            let sway = Sway::random(0.1, size.radius(), &mut rng);
+            let sway = Sway::random(0.1, size, &mut rng);
             let nominal = Place {
                 at: [3.0, 4.0],
                 to: [0.6, 0.8],

@@ -83,7 +83,6 @@ fn body(setup: &Setup<'_>, numbers: &Numbers, car: &Car, rng: &mut Rng) -> Body 
     Body {
         lane: car.lane,
         state: car.start,
-        before: car.start.s,
         sway: car.sway,
         cap: car.cap,
         actuator: Actuator::new(

@@ -4,6 +4,7 @@ pub(crate) mod outside;
 pub(crate) mod replay;
 pub(crate) mod run;
 pub(crate) mod sharp;
+pub(crate) mod zones;
 
 use cede_attack::scenario::{FAMILIES, Family};
 

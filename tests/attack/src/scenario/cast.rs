@@ -129,7 +129,7 @@ impl Cast {
                 _ => numbers.other.speed,
             },
             takeover: rng.pick(&Takeover::ALL),
-            sway: Sway::random(site.tolerance, site.lanes[lane].size.radius(), rng),
+            sway: Sway::random(site.tolerance, site.lanes[lane].size, rng),
         }
     }
 
@@ -199,11 +199,14 @@ pub fn can_begin(site: &Site, numbers: &Numbers, ego: (usize, State), other: (us
 /// Whether `other` is not behind `ego` in a lane, as far as sensors tell, or can stop there.
 fn has_gap(numbers: &Numbers, area: &Area, ego: State, other: State) -> bool {
     let error = 2.0 * numbers.position_error + 0.1;
-    let entered = ego.s + error >= area.ego[0] && other.s <= area.other[1];
+    // Until the first decision both move on.
+    let soon = numbers.period + 2.0 * numbers.jitter;
+    let entered = ego.s + error + (ego.v + soon) * soon >= area.ego[0] && other.s <= area.other[1];
     let lead = ego.s - other.s;
-    let ahead = area.lane && entered && lead + 2.0 * error >= area.lead[0];
-    let v = |state: State, error: f64| (state.v + error).max(0.0);
+    let ahead = area.lane && entered && lead + 2.0 * error + ego.v * soon >= area.lead[0];
     let error_v = 2.0 * numbers.speed_error;
-    let needs = numbers.safe_gap(v(other, error_v), v(ego, -error_v)) + 2.0 * error;
-    !ahead || lead - area.lead[1] >= needs
+    let faster = other.v + error_v + numbers.other.acceleration * soon;
+    let slower = (ego.v - error_v - numbers.ego.braking * soon).max(0.0);
+    let nearer = 2.0 * error + (faster - slower).max(0.0) * soon;
+    !ahead || lead - area.lead[1] >= numbers.safe_gap(faster, slower) + nearer
 }

@@ -38,8 +38,7 @@ impl Kind {
     }
 }
 
-/// The largest bend in one point (rad) of a way for vehicles whose corners are `radius` m from the centre, so
-/// that turning through it moves no corner by more than a centimetre or two.
+/// The largest bend in one point (rad) of a finely drawn way for vehicles whose corners are `radius` m from the centre.
 #[must_use]
 pub fn smooth(radius: f64) -> f64 {
     2.0 * (1.0 - 0.02 / radius).acos() * 0.95
