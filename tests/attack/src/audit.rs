@@ -130,9 +130,9 @@ fn inside(lanes: [&Lane; 2], at: [f64; 2]) -> bool {
 /// Whether a zone covers both arc lengths.
 fn covered(areas: &[Area], [s, t]: [f64; 2]) -> bool {
     let within = |[from, to]: [f64; 2], x: f64| from - ROUNDING <= x && x <= to + ROUNDING;
-    areas.iter().any(|area| {
-        within(area.ego, s) && within(area.other, t) && within(area.lead, s - t)
-    })
+    areas
+        .iter()
+        .any(|area| within(area.ego, s) && within(area.other, t) && within(area.lead, s - t))
 }
 
 /// At an edge of a zone, at a kink, or anywhere.
@@ -160,6 +160,10 @@ fn place(lane: &Lane, s: f64, heading: Heading, sway: Sway) -> Place {
     let chord = minus(at(s + reach).at, at(s - reach).at);
     Place {
         at: at(s).at,
-        to: if norm(chord) > 1e-6 { direction(chord) } else { at(s).to },
+        to: if norm(chord) > 1e-6 {
+            direction(chord)
+        } else {
+            at(s).to
+        },
     }
 }

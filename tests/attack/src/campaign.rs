@@ -15,7 +15,9 @@ impl Family {
     #[must_use]
     pub fn run<R: Rules + Clone>(&self, seed: u64, trace: bool) -> Outcome {
         let site = self.site(seed);
-        site.map_or_else(Outcome::default, |site| self.run_on::<R>(&site, seed, trace))
+        site.map_or_else(Outcome::default, |site| {
+            self.run_on::<R>(&site, seed, trace)
+        })
     }
 
     fn run_on<R: Rules + Clone>(&self, site: &Site, seed: u64, trace: bool) -> Outcome {
@@ -48,7 +50,10 @@ impl Family {
         let run = |seed| Tally::of(seed, &self.run_on::<R>(&site, seed, false));
         // A search is a few hundred scenarios by itself.
         let step = if self.searches { SHARE as usize } else { 1 };
-        seeds.step_by(step).map(run).fold(Tally::default(), Tally::plus)
+        seeds
+            .step_by(step)
+            .map(run)
+            .fold(Tally::default(), Tally::plus)
     }
 }
 

@@ -78,9 +78,6 @@ mod tests {
             let changes = drawn.windows(2).filter(|w| w[0] != w[1]).count();
             assert_eq!(changes == 0, shape == Shape::Constant, "{shape:?}");
         }
-        assert_eq!(
-            ErrorSource::new(Shape::Exact, 1.0, Rng::new(2)).draw(),
-            0.0
-        );
+        assert_eq!(ErrorSource::new(Shape::Exact, 1.0, Rng::new(2)).draw(), 0.0);
     }
 }

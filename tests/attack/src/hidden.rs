@@ -25,19 +25,35 @@ pub fn fits(
     let spare = SPARE + 6.0 * numbers.position_error;
     let error = 2.0 * numbers.speed_error;
     // The farthest and the nearest that the ego gets.
-    let fast = State { v: ego.v + error, ..ego };
-    let most = if go > 0 { numbers.ego.acceleration } else { command.max(0.0) };
+    let fast = State {
+        v: ego.v + error,
+        ..ego
+    };
+    let most = if go > 0 {
+        numbers.ego.acceleration
+    } else {
+        command.max(0.0)
+    };
     let farthest = fast
         .after(most, late, f64::INFINITY)
         .after(numbers.go, plan, f64::INFINITY)
         .rest(numbers.ego.braking);
-    let slow = State { v: (ego.v - error).max(0.0), ..ego };
+    let slow = State {
+        v: (ego.v - error).max(0.0),
+        ..ego
+    };
     let slow = slow.after(-numbers.ego.braking, late, f64::INFINITY);
     let cap = numbers.ego.speed - error - numbers.ego.acceleration * late;
     areas.iter().all(|area| {
         let over = ego.s >= area.ego[1] + spare || other.s >= area.other[1] + spare;
         let stops = farthest + spare < area.ego[0];
-        let clears = late + soonest(area.ego[1] + spare - slow.s, slow.v, numbers.go, cap.max(0.5));
+        let clears = late
+            + soonest(
+                area.ego[1] + spare - slow.s,
+                slow.v,
+                numbers.go,
+                cap.max(0.5),
+            );
         let arrives = soonest(
             area.other[0] - spare - other.s,
             other.v + error,

@@ -43,9 +43,9 @@
 //! ```
 
 pub mod actuator;
-pub mod campaign;
 pub mod audit;
 pub mod body;
+pub mod campaign;
 pub mod error;
 pub mod hidden;
 pub mod human;

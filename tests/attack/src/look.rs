@@ -114,8 +114,15 @@ fn alternatives(site: &Site, body: &Body, leg: Leg, s: f32, sight: &mut Sight) -
     let mine = &site.lanes[body.lane];
     let places = [body.state.s, f64::from(s) + leg.offset];
     let mut found = Vec::new();
-    for lane in site.lanes.iter().filter(|lane| lane.entry == mine.entry && lane.class == mine.class) {
-        let there = lane.legs.iter().find(|there| there.junction == leg.junction);
+    for lane in site
+        .lanes
+        .iter()
+        .filter(|lane| lane.entry == mine.entry && lane.class == mine.class)
+    {
+        let there = lane
+            .legs
+            .iter()
+            .find(|there| there.junction == leg.junction);
         let Some(there) = there.filter(|there| there.path != leg.path) else {
             continue;
         };

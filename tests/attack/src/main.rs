@@ -35,5 +35,9 @@ fn main() -> ExitCode {
         Command::Zones(args) => args.run(),
         Command::Families => command::families(),
     };
-    if held { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    if held {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
 }

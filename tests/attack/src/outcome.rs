@@ -52,8 +52,7 @@ impl Outcome {
     /// Whether the shield failed.
     #[must_use]
     pub fn is_bad(&self) -> bool {
-        self.overlap.is_some()
-            || self.breaches + self.faults + self.unplanned + self.different > 0
+        self.overlap.is_some() || self.breaches + self.faults + self.unplanned + self.different > 0
     }
 
     /// Notes what is wrong, if nothing was wrong before.

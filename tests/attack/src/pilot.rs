@@ -169,9 +169,16 @@ impl<'s, R: Rules + Clone> Pilot<'s, R> {
         decision: &Decision,
     ) -> bool {
         let ego = &bodies[self.me];
-        let plan = decision.plan.map(|plan| (decision.acceleration.into(), plan.go));
+        let plan = decision
+            .plan
+            .map(|plan| (decision.acceleration.into(), plan.go));
         let mut some = false;
-        for (sight, body) in self.sights.iter_mut().zip(bodies).filter(|(sight, _)| sight.hidden) {
+        for (sight, body) in self
+            .sights
+            .iter_mut()
+            .zip(bodies)
+            .filter(|(sight, _)| sight.hidden)
+        {
             let areas = setup.site.areas(ego.lane, body.lane);
             let fits = plan.is_some_and(|plan| fits(numbers, ego.state, plan, body.state, areas));
             some |= !fits;
@@ -206,7 +213,10 @@ impl<'s, R: Rules + Clone> Pilot<'s, R> {
     fn enter_next(&mut self, setup: &Setup<'s>, bodies: &[Body], tick: u64) {
         let me = &bodies[self.me];
         let lane = &setup.site.lanes[me.lane];
-        let next = lane.legs.iter().find(|leg| leg.junction == self.junction + 1);
+        let next = lane
+            .legs
+            .iter()
+            .find(|leg| leg.junction == self.junction + 1);
         let Some(next) = next.filter(|next| me.state.s > next.offset) else {
             return;
         };
@@ -230,7 +240,11 @@ impl<'s, R: Rules + Clone> Pilot<'s, R> {
 }
 
 fn enter<'s, R: Rules>(setup: &Setup<'s>, leg: Leg) -> Result<Shield<'s, ROOM, R>, EnterError> {
-    Shield::with_rules(setup.contract, &*setup.site.junctions[leg.junction], leg.path)
+    Shield::with_rules(
+        setup.contract,
+        &*setup.site.junctions[leg.junction],
+        leg.path,
+    )
 }
 
 impl Look {

@@ -5,8 +5,8 @@ use crate::motion::State;
 use crate::numbers::Numbers;
 use crate::proposer;
 use crate::rng::Rng;
-use crate::sight::{Shown, Sight};
 use crate::setup::Setup;
+use crate::sight::{Shown, Sight};
 use crate::site::Area;
 
 /// Braking of the rule in m/s².
@@ -61,14 +61,22 @@ impl Plain {
             };
             (shown == Shown::Seen || j == self.me).then_some(state)
         };
-        let Some(ego) = sense(self.me) else { return wanted };
+        let Some(ego) = sense(self.me) else {
+            return wanted;
+        };
         let others = (0..bodies.len()).filter(|&j| j != self.me && !bodies[j].gone);
-        let danger = others.filter_map(|j| sense(j).map(|state| (j, state))).any(|(j, other)| {
-            let areas = setup.site.areas(bodies[self.me].lane, bodies[j].lane);
-            areas.iter().any(|area| meets(area, ego, other))
-        });
+        let danger = others
+            .filter_map(|j| sense(j).map(|state| (j, state)))
+            .any(|(j, other)| {
+                let areas = setup.site.areas(bodies[self.me].lane, bodies[j].lane);
+                areas.iter().any(|area| meets(area, ego, other))
+            });
         let limited = wanted.clamp(-numbers.ego.braking, numbers.ego.acceleration);
-        if danger { -BRAKING.min(numbers.ego.braking) } else { limited }
+        if danger {
+            -BRAKING.min(numbers.ego.braking)
+        } else {
+            limited
+        }
     }
 }
 

@@ -96,7 +96,11 @@ impl Polyline {
         let away = away / reach.min(half);
         match towards.and_then(|other| self.directions.get(other)) {
             Some(&other) if (0.0..1.0).contains(&away) => {
-                let share = if ease == 1.0 { 1.0 - away } else { (1.0 - away).powf(ease) };
+                let share = if ease == 1.0 {
+                    1.0 - away
+                } else {
+                    (1.0 - away).powf(ease)
+                };
                 // Of two unit vectors, 1 to 1 is halfway.
                 let mixed = along(here.to, other, share / (2.0 - share));
                 Place {

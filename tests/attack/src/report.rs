@@ -79,7 +79,16 @@ impl fmt::Display for Report {
         writeln!(
             f,
             "{:14} {:>9} {:>8} {:>11} {:>8} {:>8} {:>8} {:>9} {:>9} {:>9}",
-            "family", "scenarios", "skipped", "steps", "overlaps", "breaches", "faults", "unplanned", "different", "through"
+            "family",
+            "scenarios",
+            "skipped",
+            "steps",
+            "overlaps",
+            "breaches",
+            "faults",
+            "unplanned",
+            "different",
+            "through"
         )?;
         for row in &self.rows {
             line(f, row.family, &row.tally)?;
@@ -91,7 +100,11 @@ impl fmt::Display for Report {
         }
         for row in &self.rows {
             if let Some(case) = &row.tally.case {
-                writeln!(f, "cede-attack replay {} {} --trace    # {}", row.family, case.seed, case.what)?;
+                writeln!(
+                    f,
+                    "cede-attack replay {} {} --trace    # {}",
+                    row.family, case.seed, case.what
+                )?;
             }
         }
         Ok(())

@@ -37,7 +37,9 @@ pub fn search<R: Rules + Clone>(setup: &Setup<'_>, trace: bool) -> Outcome {
     for round in 0..ROUNDS {
         let mut trials: Vec<(f64, Vec<f64>)> = Vec::with_capacity(TRIALS);
         for _ in 0..TRIALS {
-            let drawn = guesses.iter().map(|guess| guess.mean + guess.spread * rng.normal());
+            let drawn = guesses
+                .iter()
+                .map(|guess| guess.mean + guess.spread * rng.normal());
             let drawn: Vec<f64> = drawn.map(|a| a.clamp(low, high)).collect();
             let outcome = play::<R>(&with(setup, &drawn), false);
             let bad = outcome.verified && outcome.is_bad();

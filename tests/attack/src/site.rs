@@ -109,12 +109,11 @@ impl Site {
     ///
     /// # Errors
     /// What the controller refuses.
-    pub fn new(
-        ways: &[Way],
-        tolerance: f64,
-        order: Option<Vec<usize>>,
-    ) -> Result<Self, Refusal> {
-        let count = ways.iter().flat_map(|way| &way.cuts).map(|cut| cut.junction + 1);
+    pub fn new(ways: &[Way], tolerance: f64, order: Option<Vec<usize>>) -> Result<Self, Refusal> {
+        let count = ways
+            .iter()
+            .flat_map(|way| &way.cuts)
+            .map(|cut| cut.junction + 1);
         let mut site = Self {
             lanes: ways.iter().map(lane).collect(),
             junctions: Vec::new(),

@@ -107,4 +107,3 @@ impl Tally {
         self.case.is_some()
     }
 }
-

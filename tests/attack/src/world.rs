@@ -163,7 +163,8 @@ impl<'s, R: Rules + Clone> World<'s, R> {
             Mind::Waiting(..) | Mind::Human(_) | Mind::Plain(_) => true,
         });
         let passed = |i: &usize| {
-            is_driven(&self.minds[*i]) && (self.bodies[*i].gone || self.bodies[*i].state.s >= self.clear[*i])
+            is_driven(&self.minds[*i])
+                && (self.bodies[*i].gone || self.bodies[*i].state.s >= self.clear[*i])
         };
         self.outcome.through = (0..self.minds.len()).filter(passed).count() as u64;
         self.outcome.closest = self.judge.closest;
@@ -228,7 +229,11 @@ impl<'s, R: Rules + Clone> World<'s, R> {
     fn may_begin(&self, i: usize) -> bool {
         let ego = self.numbers.ego;
         let me = &self.bodies[i];
-        let mut others = self.bodies.iter().enumerate().filter(|&(j, body)| j != i && !body.gone);
+        let mut others = self
+            .bodies
+            .iter()
+            .enumerate()
+            .filter(|&(j, body)| j != i && !body.gone);
         (-ego.braking..=ego.acceleration).contains(&me.felt)
             && others.all(|(_, other)| {
                 let [me, other] = [me, other].map(|body| (body.lane, body.state));
@@ -254,9 +259,9 @@ impl<'s, R: Rules + Clone> World<'s, R> {
         let meeting = others.filter_map(|j| {
             let ego = &self.bodies[j];
             let areas = self.setup.site.areas(ego.lane, me.lane);
-            let ahead = areas.iter().filter(|area| {
-                ego.state.s < area.ego[1] && me.state.s < area.other[1]
-            });
+            let ahead = areas
+                .iter()
+                .filter(|area| ego.state.s < area.ego[1] && me.state.s < area.other[1]);
             let nearest = ahead.map(|area| area.other[0]).reduce(f64::min)?;
             Some((nearest, j, areas))
         });
@@ -340,7 +345,8 @@ impl<'s, R: Rules + Clone> World<'s, R> {
 
     fn found(&mut self, ego: usize, other: usize, tick: u64, flagged: bool) {
         let speeds = [ego, other].map(|i| self.bodies[i].state.v);
-        self.outcome.complain(tick, || format!("vehicles {ego} and {other} overlap"));
+        self.outcome
+            .complain(tick, || format!("vehicles {ego} and {other} overlap"));
         self.outcome.overlap = Some(Overlap {
             ego,
             other,
@@ -374,7 +380,9 @@ impl<'s, R: Rules + Clone> World<'s, R> {
         if !self.trace {
             return;
         }
-        let Mind::Shielded(pilot) = &self.minds[i] else { return };
+        let Mind::Shielded(pilot) = &self.minds[i] else {
+            return;
+        };
         let Some(decision) = pilot.last else { return };
         println!(
             "{:7.3} s: vehicle {i}: {:6.2} m/s², {:8.2} m to spare, plan {:?}: {decision}",
@@ -383,9 +391,18 @@ impl<'s, R: Rules + Clone> World<'s, R> {
             decision.margin,
             decision.plan.map(|plan| plan.go),
         );
-        for (j, body) in self.bodies.iter().enumerate().filter(|(_, body)| !body.gone) {
+        for (j, body) in self
+            .bodies
+            .iter()
+            .enumerate()
+            .filter(|(_, body)| !body.gone)
+        {
             let (lane, state) = (body.lane, body.state);
-            let number = if i == j { String::new() } else { format!("track {}", pilot.number(j)) };
+            let number = if i == j {
+                String::new()
+            } else {
+                format!("track {}", pilot.number(j))
+            };
             println!(
                 "           {j} on lane {lane}: s {:8.3} m, v {:6.3} m/s, a {:6.2} m/s² {number}",
                 state.s, state.v, body.felt
@@ -415,7 +432,13 @@ fn mind<'s, R: Rules + Clone>(
         Driver::Human(manner) => Mind::Human(human(manner, rng)),
         Driver::Plain { proposer } => {
             let driver = driver(*proposer, rng);
-            Mind::Plain(Box::new(Plain::new(setup, bodies.len(), i, driver, rng.fork())))
+            Mind::Plain(Box::new(Plain::new(
+                setup,
+                bodies.len(),
+                i,
+                driver,
+                rng.fork(),
+            )))
         }
         Driver::Shielded {
             proposer,
@@ -471,5 +494,7 @@ fn clear(setup: &Setup<'_>, i: usize) -> f64 {
     let areas = others.flat_map(|(_, other)| setup.site.areas(lane, other.lane));
     let ends = areas.filter(|area| !area.lane).map(|area| area.ego[1]);
     let length = setup.site.lanes[lane].line.length();
-    ends.filter(|&end| end < length).fold(0.6 * length, f64::max).min(length - 20.0)
+    ends.filter(|&end| end < length)
+        .fold(0.6 * length, f64::max)
+        .min(length - 20.0)
 }

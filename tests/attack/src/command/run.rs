@@ -46,7 +46,11 @@ impl Args {
 
     fn attack(&self) -> bool {
         let all: Vec<&Family> = FAMILIES.iter().collect();
-        let families = if self.families.is_empty() { &all } else { &self.families };
+        let families = if self.families.is_empty() {
+            &all
+        } else {
+            &self.families
+        };
         let bar = progress(self.steps);
         let began = Instant::now();
         let mut report = Report::new(families);

@@ -25,13 +25,23 @@ pub(crate) struct Args {
 impl Args {
     pub(crate) fn run(self) -> bool {
         let all: Vec<&Family> = FAMILIES.iter().collect();
-        let families = if self.families.is_empty() { &all } else { &self.families };
+        let families = if self.families.is_empty() {
+            &all
+        } else {
+            &self.families
+        };
         let mut covered = true;
         for family in families {
             let found = audit::of_family(family, self.seed, self.sites, self.starts as u32);
-            println!("{:14} {:>7} pairs of lanes, {} with a gap", family.name, found.pairs, found.gaps);
+            println!(
+                "{:14} {:>7} pairs of lanes, {} with a gap",
+                family.name, found.pairs, found.gaps
+            );
             if let Some((seed, [a, b], gap)) = found.deepest {
-                println!("    {:.4} m deep: site of seed {seed}, lanes {a} and {b} at {:?} m", gap.depth, gap.at);
+                println!(
+                    "    {:.4} m deep: site of seed {seed}, lanes {a} and {b} at {:?} m",
+                    gap.depth, gap.at
+                );
             }
             covered &= found.gaps == 0;
         }

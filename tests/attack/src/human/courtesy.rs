@@ -37,7 +37,13 @@ pub struct Meeting<'a> {
 impl Duty {
     /// The hardest acceleration that the contract allows the human in the tick that begins at `time` (s); `wanted` if it
     /// owes nothing.
-    pub fn limit(&mut self, numbers: &Numbers, meeting: &Meeting<'_>, time: f64, wanted: f64) -> f64 {
+    pub fn limit(
+        &mut self,
+        numbers: &Numbers,
+        meeting: &Meeting<'_>,
+        time: f64,
+        wanted: f64,
+    ) -> f64 {
         let mut limit = self.keep_distance(numbers, meeting, wanted);
         if let Some(rule) = numbers.rule {
             self.note(numbers, rule, meeting, time);
@@ -96,7 +102,11 @@ impl Duty {
         let tie = (f64::from(rule.tie) + 1.0) * numbers.period;
         let spare = 3.0 * numbers.period + 2.0 * numbers.jitter;
         // With the right of way the ego goes unless it came later by a tie; without, if it came earlier by one.
-        let lead = if meeting.first == Some(false) { -tie - spare } else { tie - spare };
+        let lead = if meeting.first == Some(false) {
+            -tie - spare
+        } else {
+            tie - spare
+        };
         self.waited || me > ego + lead
     }
 }

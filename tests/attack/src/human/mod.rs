@@ -62,7 +62,8 @@ impl Manner {
     /// One that does not aim at anybody.
     #[must_use]
     pub fn gentle(rng: &mut Rng) -> Self {
-        rng.pick(&[&Self::Coast, &Self::Random, &Self::Creep]).clone()
+        rng.pick(&[&Self::Coast, &Self::Random, &Self::Creep])
+            .clone()
     }
 }
 
@@ -182,11 +183,7 @@ impl Human {
         let inside = me.s > area.other[0];
         self.hold(
             |rng, _| {
-                if inside && rng.chance(0.7) {
-                    down
-                } else {
-                    up
-                }
+                if inside && rng.chance(0.7) { down } else { up }
             },
             if inside { 30 } else { 4 },
         )
@@ -199,11 +196,7 @@ impl Human {
         let closes = behind > 0.0 && behind < near + 8.0 && prey.state.v > me.v - 1.0;
         self.hold(
             |rng, _| {
-                if closes && rng.chance(0.6) {
-                    down
-                } else {
-                    up
-                }
+                if closes && rng.chance(0.6) { down } else { up }
             },
             8,
         )

@@ -99,12 +99,18 @@ impl Cast {
 
     fn car(&self, number: usize, site: &Site, numbers: &Numbers, rng: &mut Rng) -> Car {
         let shielded = number < self.shielded;
-        let lane = if (self.first_lane && number == 0) || (self.start == Start::Queue && rng.chance(0.75)) {
+        let lane = if (self.first_lane && number == 0)
+            || (self.start == Start::Queue && rng.chance(0.75))
+        {
             0
         } else {
             rng.below(site.lanes.len())
         };
-        let fastest = if shielded { numbers.ego.speed } else { numbers.other.speed };
+        let fastest = if shielded {
+            numbers.ego.speed
+        } else {
+            numbers.other.speed
+        };
         let start = self.state(site, lane, fastest, rng);
         let driver = if shielded {
             self.shielded(numbers, rng)
@@ -143,8 +149,19 @@ impl Cast {
             Start::Queue => (rng.within(-60.0, 30.0), rng.within(0.0, fastest)),
             Start::Rest => {
                 let near = rng.chance(0.7);
-                let v = if near { 0.0 } else { rng.within(0.0, 0.6 * fastest) };
-                (if near { rng.within(-9.0, -0.3) } else { rng.within(-40.0, -8.0) }, v)
+                let v = if near {
+                    0.0
+                } else {
+                    rng.within(0.0, 0.6 * fastest)
+                };
+                (
+                    if near {
+                        rng.within(-9.0, -0.3)
+                    } else {
+                        rng.within(-40.0, -8.0)
+                    },
+                    v,
+                )
             }
         };
         State {
@@ -155,7 +172,11 @@ impl Cast {
 
     fn shielded(&self, numbers: &Numbers, rng: &mut Rng) -> Driver {
         let late = rng.chance(self.late);
-        let before = if rng.chance(0.5) { Manner::Coast } else { Manner::Stand };
+        let before = if rng.chance(0.5) {
+            Manner::Coast
+        } else {
+            Manner::Stand
+        };
         let from = 1 + rng.below(1200) as u64;
         let mut proposer = Proposer::random(rng);
         if let Proposer::Speed { wanted } = &mut proposer {
@@ -181,18 +202,26 @@ impl Cast {
 fn fit(site: &Site, numbers: &Numbers, a: &Car, b: &Car) -> bool {
     let shielded = |car: &Car| matches!(car.driver, Driver::Shielded { .. });
     let [one, two] = [a, b].map(|car| (car.lane, car.start));
-    !(shielded(a) || shielded(b)) || can_begin(site, numbers, one, two) && can_begin(site, numbers, two, one)
+    !(shielded(a) || shielded(b))
+        || can_begin(site, numbers, one, two) && can_begin(site, numbers, two, one)
 }
 
 /// Whether control of a vehicle can be handed over while there is another: they are apart, and that one is not behind
 /// it in its lane, or has the safe gap. Each is a lane and a motion.
 #[must_use]
-pub fn can_begin(site: &Site, numbers: &Numbers, ego: (usize, State), other: (usize, State)) -> bool {
+pub fn can_begin(
+    site: &Site,
+    numbers: &Numbers,
+    ego: (usize, State),
+    other: (usize, State),
+) -> bool {
     let place = |(lane, state): (usize, State)| site.lanes[lane].line.place(state.s);
     let size = |(lane, _): (usize, State)| site.lanes[lane].size;
     let gap = separation(place(ego), size(ego), place(other), size(other));
     let areas = site.areas(ego.0, other.0);
-    let keeps = areas.iter().all(|area| has_gap(numbers, area, ego.1, other.1));
+    let keeps = areas
+        .iter()
+        .all(|area| has_gap(numbers, area, ego.1, other.1));
     gap > 0.5 + 2.0 * site.tolerance && keeps
 }
 

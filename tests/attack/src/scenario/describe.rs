@@ -15,10 +15,17 @@ impl Family {
             return;
         };
         println!("{:#?}\n{:?}", setup.contract, setup.sensing);
-        println!("tolerance {} m, order of the lanes {:?}", site.tolerance, site.order);
+        println!(
+            "tolerance {} m, order of the lanes {:?}",
+            site.tolerance, site.order
+        );
         for (i, car) in setup.cars.iter().enumerate() {
             let lane = &site.lanes[car.lane];
-            println!("vehicle {i}: {car:?}, {:?}, waits at {:.3} m", lane.size, site.line(car.lane));
+            println!(
+                "vehicle {i}: {car:?}, {:?}, waits at {:.3} m",
+                lane.size,
+                site.line(car.lane)
+            );
             for (j, other) in setup.cars.iter().enumerate().filter(|&(j, _)| j != i) {
                 for area in site.areas(car.lane, other.lane) {
                     println!("    with {j}: {area:?}");

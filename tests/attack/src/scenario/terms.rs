@@ -67,7 +67,12 @@ impl Terms {
     #[must_use]
     pub fn usual(rng: &mut Rng) -> Self {
         Self {
-            times: rng.pick(&[[0.1, 0.1, 0.0], [0.1, 0.1, 0.0], [0.1, 0.05, 0.0], [0.1, 0.0, 0.0]]),
+            times: rng.pick(&[
+                [0.1, 0.1, 0.0],
+                [0.1, 0.1, 0.0],
+                [0.1, 0.05, 0.0],
+                [0.1, 0.0, 0.0],
+            ]),
             ego: [
                 rng.pick(&[15.0, 15.0, 14.0, 8.0, 1.5]),
                 rng.pick(&[3.0, 3.0, 4.0, 6.0]),
@@ -101,7 +106,11 @@ impl Terms {
     /// With exact sensors or not.
     #[must_use]
     pub fn perhaps_blurred(self, rng: &mut Rng) -> Self {
-        if rng.chance(0.5) { self } else { self.blurred(rng) }
+        if rng.chance(0.5) {
+            self
+        } else {
+            self.blurred(rng)
+        }
     }
 
     /// With other periods, latencies and jitter.

@@ -24,7 +24,11 @@ impl Arm {
     fn entry(self) -> Place {
         let out = self.outwards();
         Place {
-            at: along([out[0] * self.radius, out[1] * self.radius], left(out), self.aside),
+            at: along(
+                [out[0] * self.radius, out[1] * self.radius],
+                left(out),
+                self.aside,
+            ),
             to: [-out[0], -out[1]],
         }
     }
@@ -33,7 +37,11 @@ impl Arm {
     fn exit(self) -> Place {
         let out = self.outwards();
         Place {
-            at: along([out[0] * self.radius, out[1] * self.radius], left(out), -self.aside),
+            at: along(
+                [out[0] * self.radius, out[1] * self.radius],
+                left(out),
+                -self.aside,
+            ),
             to: out,
         }
     }

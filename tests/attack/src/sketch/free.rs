@@ -56,14 +56,7 @@ pub fn near_parallel(count: usize, users: Users, rng: &mut Rng) -> Vec<Way> {
 pub fn weaving(count: usize, users: Users, rng: &mut Rng) -> Vec<Way> {
     let base = rng.within(0.0, TAU);
     let way = |entry| match entry % 2 {
-        0 => bent(
-            [0.0, rng.within(-1.0, 1.0)],
-            base,
-            0.0,
-            entry,
-            users,
-            rng,
-        ),
+        0 => bent([0.0, rng.within(-1.0, 1.0)], base, 0.0, entry, users, rng),
         _ => weave(base, entry, users, rng),
     };
     (0..count).map(way).collect()
@@ -98,12 +91,17 @@ pub fn winding(count: usize, users: Users, rng: &mut Rng) -> Vec<Way> {
         let kind = users.kind(rng);
         let size = kind.size(rng);
         let bend = smooth(size.radius());
-        let mut pen = Pen::at([rng.within(-70.0, -50.0), rng.within(-8.0, 8.0)], rng.within(-0.2, 0.2));
+        let mut pen = Pen::at(
+            [rng.within(-70.0, -50.0), rng.within(-8.0, 8.0)],
+            rng.within(-0.2, 0.2),
+        );
         pen = pen.straight(APPROACH - 40.0);
         for _ in 0..2 + rng.below(2) {
             let radius = rng.within(8.0, 20.0);
             let length = radius * rng.within(0.5, 2.8);
-            pen = pen.arc(length, rng.sign() / radius, bend).straight(rng.within(1.0, 12.0));
+            pen = pen
+                .arc(length, rng.sign() / radius, bend)
+                .straight(rng.within(1.0, 12.0));
         }
         Way::whole(pen.straight(LEAVING).done(), kind, size, entry)
     };

@@ -8,7 +8,7 @@ mod row;
 
 pub use arms::{crossroads, merge, star};
 pub use corners::corners;
-pub use free::{curves, lanes, near_parallel, winding, weaving, with_bystanders};
+pub use free::{curves, lanes, near_parallel, weaving, winding, with_bystanders};
 pub use row::row;
 
 use crate::plane::Size;

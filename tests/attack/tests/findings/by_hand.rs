@@ -4,9 +4,7 @@ use crate::stage::{car_way, crossing, sensed, site};
 use cede_attack::motion::State;
 use cede_attack::numbers::Numbers;
 use cede_attack::site::Site;
-use cede_controller::{
-    Cause, Contract, Fault, Instant, Observation, PathId, Shield, Track,
-};
+use cede_controller::{Cause, Contract, Fault, Instant, Observation, PathId, Shield, Track};
 
 fn shield(site: &Site, contract: Contract) -> Shield<'_> {
     Shield::enter(contract, &*site.junctions[0], PathId::new(0)).unwrap()
@@ -60,7 +58,11 @@ fn e14_the_way_out_leads_into_nobody() {
             let decision = shield.filter(Instant::from_millis(100 * period), &observation, 3.0);
             unplanned += u32::from(decision.plan.is_none());
             ego = ego.after(decision.acceleration.into(), 0.1, 15.0);
-            assert!(ego.s + 5.0 < ahead, "it hits the one ahead at {} m/s", ego.v);
+            assert!(
+                ego.s + 5.0 < ahead,
+                "it hits the one ahead at {} m/s",
+                ego.v
+            );
         }
         assert!(unplanned > 0, "vacuous: there was a plan");
     }
@@ -71,14 +73,28 @@ fn e14_the_way_out_leads_into_nobody() {
 #[test]
 fn e16_an_ego_past_the_entry_still_sees_who_comes_from_behind() {
     let main = car_way(&[[-110.0, 0.0], [110.0, 0.0]]);
-    let ramp = car_way(&[[-86.6, -50.0], [-8.66, -5.0], [-4.0, -2.5], [0.0, -0.9], [4.0, -0.2], [8.0, 0.0], [110.0, 0.0]]);
+    let ramp = car_way(&[
+        [-86.6, -50.0],
+        [-8.66, -5.0],
+        [-4.0, -2.5],
+        [0.0, -0.9],
+        [4.0, -0.2],
+        [8.0, 0.0],
+        [110.0, 0.0],
+    ]);
     let site = site(&[ramp, main], Some(vec![0, 1]));
     let area = *site.areas(0, 1).iter().find(|area| area.lane).unwrap();
     let numbers = Numbers::of(&Contract::ALL_WAY_STOP);
     let mut near = 0;
     for start in 0..40 {
         for away in 0..50 {
-            near += u32::from(merges(&site, area.ego[0], f64::from(start) * 0.2, f64::from(away), &numbers));
+            near += u32::from(merges(
+                &site,
+                area.ego[0],
+                f64::from(start) * 0.2,
+                f64::from(away),
+                &numbers,
+            ));
         }
     }
     assert!(near > 20, "vacuous: {near}");
@@ -98,7 +114,11 @@ fn merges(site: &Site, entry: f64, start: f64, away: f64, numbers: &Numbers) -> 
     };
     let mut near = false;
     for period in 0..60 {
-        let tracks = [Track::on(3, PathId::new(1), sensed(site, 1, other.s, other.v))];
+        let tracks = [Track::on(
+            3,
+            PathId::new(1),
+            sensed(site, 1, other.s, other.v),
+        )];
         let observation = Observation {
             ego: sensed(site, 0, ego.s, ego.v),
             tracks: &tracks,
@@ -106,10 +126,18 @@ fn merges(site: &Site, entry: f64, start: f64, away: f64, numbers: &Numbers) -> 
         let decision = shield.filter(Instant::from_millis(100 * period), &observation, 3.0);
         let gap = ego.s - other.s - area.lead[1];
         let past = (0.0..1.0).contains(&(ego.s - entry));
-        if past && gap < numbers.safe_gap(other.v, ego.v) - 1.0 && other.s < area.other[0] + 5.0 && gap > -3.0 {
+        if past
+            && gap < numbers.safe_gap(other.v, ego.v) - 1.0
+            && other.s < area.other[0] + 5.0
+            && gap > -3.0
+        {
             near |= ego.v < 2.0;
             let carefree = decision.cause == Cause::Policy && decision.margin > 1e4;
-            assert!(!carefree, "{gap} m ahead of one at {} m/s: {decision:?}", other.v);
+            assert!(
+                !carefree,
+                "{gap} m ahead of one at {} m/s: {decision:?}",
+                other.v
+            );
         }
         ego = ego.after(decision.acceleration.into(), 0.1, 15.0);
         other = other.after(0.0, 0.1, 15.0);

@@ -29,8 +29,18 @@ fn at_the_lines(site: &Site, rng: &mut Rng) -> Vec<Car> {
     };
     let near = rng.within(0.5, 13.0);
     vec![
-        car(0, arrives - rng.within(0.5, 13.0), rng.within(2.0, 8.0), shielded(slowly)),
-        car(1, arrives - near + 1.0, rng.within(0.0, 0.3 * near), shielded(waits)),
+        car(
+            0,
+            arrives - rng.within(0.5, 13.0),
+            rng.within(2.0, 8.0),
+            shielded(slowly),
+        ),
+        car(
+            1,
+            arrives - near + 1.0,
+            rng.within(0.0, 0.3 * near),
+            shielded(waits),
+        ),
     ]
 }
 
@@ -53,7 +63,8 @@ fn e05_two_shields_that_see_different_things_never_both_go() {
             let tally = search(500, |seed, rng| {
                 let cars = at_the_lines(&site, rng);
                 let mut setup = setup(&site, erring(error), cars, 22.0, seed);
-                setup.sensing.shape = Some(rng.pick(&[Shape::Constant, Shape::Alternating, Shape::Held]));
+                setup.sensing.shape =
+                    Some(rng.pick(&[Shape::Constant, Shape::Alternating, Shape::Held]));
                 setup
             });
             assert_held(&tally, 300);
@@ -98,9 +109,13 @@ fn e07_a_missing_track_gives_nothing_away() {
 /// The ego has waited for five seconds at its line; somebody appears `away` m from its own, at 6 m/s.
 fn goes_first(away: f64) -> bool {
     let site = crossing(None);
-    let mut shield = Shield::<8>::enter(Contract::ALL_WAY_STOP, &*site.junctions[0], PathId::new(0)).unwrap();
+    let mut shield =
+        Shield::<8>::enter(Contract::ALL_WAY_STOP, &*site.junctions[0], PathId::new(0)).unwrap();
     let (line, other_line) = (site.line(0), site.line(1));
-    let mut ego = State { s: line - 14.0, v: 3.0 };
+    let mut ego = State {
+        s: line - 14.0,
+        v: 3.0,
+    };
     for period in 0..80 {
         let wants = if ego.s < line - 3.0 { 0.0 } else { -2.0 };
         let observation = Observation {

@@ -26,10 +26,13 @@ fn e04_a_pose_that_contradicts_the_arc_length_is_refused_and_nobody_is_hit() {
     for seed in 0..1500 {
         let mut rng = Rng::new(seed);
         let mut shield = shield(&site);
-        let mut states = [(0.0, 30.0, 10.0), (0.0, 60.0, 12.0), (0.0, 60.0, 12.0)].map(|(from, to, fast)| State {
-            s: rng.within(from, to),
-            v: rng.within(0.0, fast),
-        });
+        let mut states =
+            [(0.0, 30.0, 10.0), (0.0, 60.0, 12.0), (0.0, 60.0, 12.0)].map(|(from, to, fast)| {
+                State {
+                    s: rng.within(from, to),
+                    v: rng.within(0.0, fast),
+                }
+            });
         for period in 0..120 {
             let [ego, a, b] = states;
             let wrong = |number: u16, lane: usize, other: usize, state: State| {
@@ -59,14 +62,20 @@ fn e04_a_pose_that_contradicts_the_arc_length_is_refused_and_nobody_is_hit() {
             let places = [0, 1, 2].map(|lane| site.lanes[lane].line.place(states[lane].s));
             let size = site.lanes[0].size;
             for other in [1, 2] {
-                assert!(separation(places[0], size, places[other], size) > 0.0, "seed {seed}");
+                assert!(
+                    separation(places[0], size, places[other], size) > 0.0,
+                    "seed {seed}"
+                );
             }
             if states.iter().any(|state| state.s > 134.0) {
                 break;
             }
         }
     }
-    assert!(verified > 800 && refused > 10_000, "vacuous: {verified}, {refused}");
+    assert!(
+        verified > 800 && refused > 10_000,
+        "vacuous: {verified}, {refused}"
+    );
 }
 
 /// Beyond the route's end nobody knows what is there.
@@ -74,9 +83,7 @@ fn e04_a_pose_that_contradicts_the_arc_length_is_refused_and_nobody_is_hit() {
 fn e08_arc_lengths_beyond_the_route_are_refused() {
     let site = crossing(None);
     let at = |s: f64| sensed(&site, 0, s, 5.0);
-    let refused = |fault: Option<Fault>, subject: Subject| {
-        matches!(fault, Some(Fault::Input(input)) if input.subject == subject && input.field == Field::ArcLength)
-    };
+    let refused = |fault: Option<Fault>, subject: Subject| matches!(fault, Some(Fault::Input(input)) if input.subject == subject && input.field == Field::ArcLength);
     for s in [-1.0, 181.0, 300.0] {
         let observation = Observation {
             ego: at(s),
@@ -103,7 +110,10 @@ fn e10_long_arc_lengths_are_refused() {
     let long = car_way(&[[-6000.0, 0.0], [60.0, 0.0]]);
     let across = car_way(&[[0.0, -60.0], [0.0, 60.0]]);
     let built = Site::new(&[long, across], 0.1, None);
-    assert!(matches!(built, Err(Refusal::Junction(JunctionError::TooLong { .. }))));
+    assert!(matches!(
+        built,
+        Err(Refusal::Junction(JunctionError::TooLong { .. }))
+    ));
 }
 
 /// Contracts for which the theorem says nothing.
@@ -112,7 +122,13 @@ fn e11_contracts_outside_of_the_theorem_are_refused() {
     let worst = Contract::builder;
     let refused = [
         ("ego.acceleration", worst().other_acceleration(2.0).build()),
-        ("ego.acceleration", worst().ego_acceleration(4.5).other_acceleration(5.0).build()),
+        (
+            "ego.acceleration",
+            worst()
+                .ego_acceleration(4.5)
+                .other_acceleration(5.0)
+                .build(),
+        ),
         ("ego.max_speed", worst().ego_max_speed(16.0).build()),
         ("ego.max_speed", worst().ego_max_speed(30.0).build()),
         ("slack", worst().slack(0.0).build()),

@@ -26,10 +26,22 @@ fn e01_a_bystander_that_blinks_voids_no_plan() {
     assert!(site.areas(0, 2).is_empty());
     for error in [0.0, 0.1, 0.3, 0.6] {
         let tally = search(1200, |seed, rng| {
-            let manner = rng.pick(&[&Manner::Aim, &Manner::Lurk, &Manner::Rush]).clone();
+            let manner = rng
+                .pick(&[&Manner::Aim, &Manner::Lurk, &Manner::Rush])
+                .clone();
             let cars = vec![
-                car(0, rng.within(0.0, 45.0), rng.within(0.0, 12.0), shielded(Proposer::Full)),
-                car(1, rng.within(0.0, 70.0), rng.within(0.0, 12.0), Driver::Human(manner)),
+                car(
+                    0,
+                    rng.within(0.0, 45.0),
+                    rng.within(0.0, 12.0),
+                    shielded(Proposer::Full),
+                ),
+                car(
+                    1,
+                    rng.within(0.0, 70.0),
+                    rng.within(0.0, 12.0),
+                    Driver::Human(manner),
+                ),
                 car(2, 40.0, 0.0, Driver::Human(Manner::Stand)),
             ];
             let mut setup = setup(&site, erring(error, error), cars, 15.0, seed);
@@ -45,11 +57,17 @@ fn e01_a_bystander_that_blinks_voids_no_plan() {
 }
 
 /// The leader brakes hard, and sensors show both nearer to and farther from each other than they are.
-fn behind<'s>(site: &'s Site, length: f64, contract: Contract) -> impl Fn(u64, &mut Rng) -> Setup<'s> {
+fn behind<'s>(
+    site: &'s Site,
+    length: f64,
+    contract: Contract,
+) -> impl Fn(u64, &mut Rng) -> Setup<'s> {
     move |seed, rng| {
         let error = f64::from(contract.position_error());
         let gap = length + 0.3 + rng.within(0.0, 20.0) + 4.0 * error;
-        let leader = rng.pick(&[&Manner::Bang, &Manner::BrakeCheck, &Manner::Random]).clone();
+        let leader = rng
+            .pick(&[&Manner::Bang, &Manner::BrakeCheck, &Manner::Random])
+            .clone();
         let cars = vec![
             car(0, 20.0, rng.within(0.0, 6.0), shielded(Proposer::Full)),
             car(0, 20.0 + gap, rng.within(0.0, 8.0), Driver::Human(leader)),
@@ -79,7 +97,13 @@ fn e02_behind_a_leader_errors_of_position_are_refused_or_safe() {
 /// cover that, too.
 #[test]
 fn e09_kinks_are_refused_or_covered() {
-    let front_page = [[-40.0, -2.0], [-6.0, -2.0], [0.0, 0.0], [2.0, 6.0], [2.0, 40.0]];
+    let front_page = [
+        [-40.0, -2.0],
+        [-6.0, -2.0],
+        [0.0, 0.0],
+        [2.0, 6.0],
+        [2.0, 40.0],
+    ];
     let corner = [[-40.0, 0.0], [0.0, 0.0], [0.0, 40.0]];
     let beside = |x: f32| [[x, 40.0], [x, -40.0]];
     let mut cases = vec![(front_page.to_vec(), [[40.0, 2.0], [-40.0, 2.0]], 4.6)];
@@ -95,9 +119,17 @@ fn e09_kinks_are_refused_or_covered() {
         let Ok(site) = Site::new(&ways, 0.1, None) else {
             continue;
         };
-        for heading in [Heading::Lane, Heading::Chord(0.5), Heading::Chord(1.5), Heading::Chord(3.0)] {
+        for heading in [
+            Heading::Lane,
+            Heading::Chord(0.5),
+            Heading::Chord(1.5),
+            Heading::Chord(3.0),
+        ] {
             let gap = uncovered(&site, (0, 1), heading, 3000, &mut rng);
-            assert!(gap.is_none(), "{turning:?} {straight:?} {heading:?}: {gap:?}");
+            assert!(
+                gap.is_none(),
+                "{turning:?} {straight:?} {heading:?}: {gap:?}"
+            );
         }
     }
 }
@@ -110,7 +142,12 @@ fn e12_without_limiters_nobody_is_accused_and_no_plan_is_lost() {
         let mut cars: Vec<_> = (0..2)
             .map(|lane| {
                 let proposer = rng.pick(&[Proposer::Full, Proposer::Random]);
-                car(lane, rng.within(5.0, 70.0), rng.within(8.0, 15.0), shielded(proposer))
+                car(
+                    lane,
+                    rng.within(5.0, 70.0),
+                    rng.within(8.0, 15.0),
+                    shielded(proposer),
+                )
             })
             .collect();
         for car in &mut cars {

@@ -116,7 +116,8 @@ impl Watcher {
             self.seen = Some((state, now));
         }
         let ([s, speed], at) = self.seen?;
-        let bounds = Bounds::after(&self.contract, s, speed, now.seconds_since(at));
+        let bounds =
+            Bounds::sensed(&self.contract, s, speed).after(&self.contract, now.seconds_since(at));
         let rest = state.map_or(RestState::Perhaps, |[_, speed]| self.rest(speed));
         Some(Sighting {
             s: Some(bounds.s),
