@@ -1,7 +1,6 @@
 //! The conflict zones ahead, as distances from where the ego is now.
 
 use super::contract::Contract;
-use super::margin;
 use super::own::Own;
 use super::precedence::has;
 use super::reach::Reach;
@@ -311,7 +310,7 @@ pub(super) fn settle<'z, R: Rules>(
             continue;
         }
         let slowest = Real::max(ego.speed - contract.speed_error, 0.0);
-        let needs = margin::safe_gap(contract, other.bounds.speed.to, slowest);
+        let needs = R::safe_gap(contract, other.bounds.speed.to, slowest);
         let enough = gap_ahead(zone, ego, other) >= needs;
         if appeared || has(other.counted, index) || enough {
             other.settled |= 1 << index;
