@@ -134,15 +134,18 @@ struct Sight {
 }
 
 impl Sight {
-    /// One more step, with failures of the given probability.
+    /// One more step, with failures of the given probability; that of a single track is a quarter of it.
     fn fail(&mut self, probability: f64, rng: &mut Pcg64) {
-        let failures = std::iter::once(&mut self.blind).chain(&mut self.missing);
-        for left in failures {
+        let mut fail = |left: &mut u32, probability| {
             if *left > 0 {
                 *left -= 1;
             } else if rng.random_bool(probability) {
                 *left = rng.random_range(1..40);
             }
+        };
+        fail(&mut self.blind, probability);
+        for left in &mut self.missing {
+            fail(left, 0.25 * probability);
         }
     }
 }
