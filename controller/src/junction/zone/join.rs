@@ -24,8 +24,10 @@ pub(super) struct Patch {
 }
 
 impl Patch {
+    /// Where they meet head-on is a zone of its own, also if it hangs together with a lane: there, who leads is not who is
+    /// ahead.
     fn touches(&self, other: &Self) -> bool {
-        self.ego.touches(other.ego) && self.other.touches(other.other)
+        self.mixed == other.mixed && self.ego.touches(other.ego) && self.other.touches(other.other)
     }
 
     /// Whether nothing that is occupied in the cell would change the patch.
@@ -35,7 +37,7 @@ impl Patch {
             && holds(self.ego, cell.ego)
             && holds(self.other, cell.other)
             && holds(self.lead, cell.lead)
-            && (self.mixed || !cell.opposite)
+            && self.mixed == cell.opposite
             && (!cell.parallel || self.parallel.is_some_and(|known| holds(known, cell.ego)))
     }
 
@@ -89,7 +91,11 @@ fn widened(band: Span, width: f32) -> Span {
 /// Whether nothing that is occupied in the cell would change the patches: one covers it, and no other
 /// one touches it.
 pub(super) fn covered(patches: &[Option<Patch>; MAX_ZONES], cell: &Cell) -> bool {
-    let touches = |patch: &&Patch| patch.ego.touches(cell.ego) && patch.other.touches(cell.other);
+    let touches = |patch: &&Patch| {
+        patch.mixed == cell.opposite
+            && patch.ego.touches(cell.ego)
+            && patch.other.touches(cell.other)
+    };
     let mut touching = patches.iter().flatten().filter(touches);
     touching.next().is_some_and(|patch| patch.covers(cell)) && touching.next().is_none()
 }
