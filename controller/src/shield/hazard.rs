@@ -309,14 +309,8 @@ pub(super) fn settle<'z, R: Rules>(
         if !zone.is_lane() || !is_ahead::<R>(contract, zone, ego, other) {
             continue;
         }
-        // One that has to give way has reacted already.
-        let follower = if has(other.claims, index) {
-            contract.prompt()
-        } else {
-            *contract
-        };
         let slowest = Real::max(ego.speed - contract.speed_error, 0.0);
-        let needs = R::safe_gap(&follower, other.bounds.speed.to, slowest);
+        let needs = R::safe_gap(contract, other.bounds.speed.to, slowest);
         let enough = gap_ahead(zone, ego, other) >= needs;
         if appeared || has(other.counted, index) || enough {
             other.settled |= 1 << index;

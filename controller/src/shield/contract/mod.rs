@@ -283,12 +283,6 @@ impl Contract {
         same && timing && errors && others && follower
     }
 
-    /// The same contract with followers that have reacted already.
-    pub(super) const fn prompt(mut self) -> Self {
-        self.follower.reaction = 0.0;
-        self
-    }
-
     /// The speed (m/s) up to which a vehicle counts as one at rest: a quarter of what `go` gives in a period.
     pub(super) const fn rest_speed(&self) -> f32 {
         0.25 * self.ego.go * self.period
