@@ -39,10 +39,7 @@ pub const INFLATION: f32 = 0.02;
 /// is ahead along its route may be in front of the other.
 pub(crate) const WIDEST: f32 = 2.0;
 
-/// Zones whose intervals come as near as this (m) are one: nobody stops in between.
-const JOINED: f32 = 0.1;
-
-/// What is as near as this (m) to a route's end is at its end.
+/// Zones whose intervals come as near as this (m) are one; also how near to a route's end its end is.
 const TOUCHING: f32 = 1.0e-3;
 
 /// A closed interval, `from` ≤ `to`.
@@ -72,7 +69,7 @@ impl Span {
     }
 
     fn touches(self, other: Self) -> bool {
-        self.from <= other.to + JOINED && other.from <= self.to + JOINED
+        self.from <= other.to + TOUCHING && other.from <= self.to + TOUCHING
     }
 
     /// Whether `value` is in the interval, ends included.
