@@ -17,7 +17,7 @@ pub enum RestState {
 }
 
 impl RestState {
-    /// What a vehicle does that is sensed at `speed` (m/s); to be at rest is to have [`Contract::rest_speed`] or less.
+    /// What a vehicle does that is sensed at `speed` (m/s); to be at rest is to be no faster than a quarter of what `go` gains in a period.
     ///
     /// One surely at rest here is faster than that by twice the error at most, and any other
     /// sensor shows one error more: for that one it is perhaps at rest. One that moves could not have been
