@@ -151,11 +151,12 @@ fn points(random: &mut Random) -> Vec<Point> {
     vec![from, entry, middle, exit, to]
 }
 
-/// Whether no bend is too sharp for a junction.
+/// Whether no bend is too sharp for a junction, and the route does not come back to itself.
 fn drivable(points: &[Point]) -> bool {
     let route = Route::<POINTS>::new(points.iter().copied());
     route.is_ok_and(|route| {
         let mut builder = Junction::<1, POINTS>::builder();
-        builder.path(&route, Class::Car, Footprint::PAPER).is_ok()
+        let path = builder.path(&route, Class::Car, Footprint::PAPER);
+        path.is_ok() && builder.build().is_ok()
     })
 }
