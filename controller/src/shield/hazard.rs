@@ -5,9 +5,10 @@ use super::own::Own;
 use super::precedence::has;
 use super::reach::Reach;
 use super::rules::Rules;
-use super::tracks::{Closed, News, Other, Tracks};
+use super::tracks::{News, Other, Tracks};
+use super::unwatched::Closed;
 use crate::junction::zone::{FAR, MAX_ZONES, Zone};
-use crate::junction::{MAX_OTHERS, RightOfWay, Way};
+use crate::junction::{MAX_OTHERS, RightOfWay, RouteConflict, Way};
 use crate::real::Real;
 use heapless::Vec;
 
@@ -91,11 +92,9 @@ impl Hazards {
             let Some(conflict) = way.conflict(other.path) else {
                 continue;
             };
-            for (index, zone) in (0_u8..).zip(conflict.zones()) {
-                let Some(hazard) = hazard::<R>(contract, (index, zone), ego, other) else {
-                    continue;
-                };
-                if has(other.claims, index) && granted(contract, hazard.passage, zone, (ego, other))
+            for (zone, hazard) in of::<R>(contract, conflict, ego, other) {
+                if has(other.claims, hazard.zone)
+                    && granted(contract, hazard.passage, zone, (ego, other))
                 {
                     let entry = zone.ego.from - ego.s - contract.position_error;
                     open = [Real::min(open[0], entry), Real::max(open[1], hazard.target)];
@@ -163,8 +162,13 @@ impl Hazards {
 }
 
 impl Hazard {
+    /// Whether nobody watches it.
+    pub(super) const fn is_closed(&self) -> bool {
+        self.place == u8::MAX
+    }
+
     /// Zones that nobody watches.
-    fn closed(contract: &Contract, ego: &Own, closed: Closed) -> Self {
+    pub(super) fn closed(contract: &Contract, ego: &Own, closed: Closed) -> Self {
         Self {
             other: closed.number,
             place: u8::MAX,
@@ -178,6 +182,20 @@ impl Hazard {
             passage: Passage::Never,
         }
     }
+}
+
+/// The hazards that `other` is to the ego, each with its zone.
+pub(super) fn of<'z, R: Rules>(
+    contract: &Contract,
+    conflict: &'z RouteConflict,
+    ego: &Own,
+    other: &Other,
+) -> impl Iterator<Item = (&'z Zone, Hazard)> {
+    let zones = (0_u8..).zip(conflict.zones());
+    zones.filter_map(move |(index, zone)| {
+        let hazard = hazard::<R>(contract, (index, zone), ego, other)?;
+        Some((zone, hazard))
+    })
 }
 
 /// The hazard of one zone, if it is one.

@@ -18,8 +18,6 @@ struct Remembered {
     at: Instant,
     /// Calls since then.
     calls: u32,
-    /// Arc length (m) of the ego at which the zones begin that it stays out of because nobody watches them.
-    closed: f32,
 }
 
 /// The plan that was verified last, the commands given, and where the ego was.
@@ -54,29 +52,20 @@ impl Memory {
         self.remembered.map(|remembered| remembered.plan)
     }
 
-    /// A plan is verified at `now` against everybody, and stays out of what is `closed` (m).
-    pub(crate) fn verified(&mut self, plan: Plan, now: Instant, closed: f32) {
+    /// A plan is verified at `now` against everybody.
+    pub(crate) fn verified(&mut self, plan: Plan, now: Instant) {
         self.remembered = Some(Remembered {
             plan,
             at: now,
             calls: 0,
-            closed,
         });
     }
 
     /// What is left of the plan holds from `now` on, whenever it was verified.
-    pub(crate) fn confirmed(&mut self, now: Instant, closed: f32) {
+    pub(crate) fn confirmed(&mut self, now: Instant) {
         if let Some(remembered) = &mut self.remembered {
             remembered.at = now;
             remembered.calls = 0;
-            remembered.closed = closed;
-        }
-    }
-
-    /// What is left of the plan stays out of zones that begin at `closed` (m).
-    pub(crate) fn avoid(&mut self, closed: f32) {
-        if let Some(remembered) = &mut self.remembered {
-            remembered.closed = closed;
         }
     }
 
@@ -89,12 +78,6 @@ impl Memory {
         if let Some(remembered) = &mut self.remembered {
             remembered.plan = tail(remembered.plan);
         }
-    }
-
-    /// Whether the plan stays out of zones that begin at `closed` (m).
-    pub(crate) fn avoids(&self, closed: f32) -> bool {
-        self.remembered
-            .is_none_or(|remembered| remembered.closed <= closed)
     }
 
     /// Another call at `now`. Whether the plan's commands have been given at the times that it counts on.

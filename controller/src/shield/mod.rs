@@ -21,6 +21,7 @@ pub(crate) mod rules;
 #[cfg(test)]
 mod tests;
 pub(crate) mod tracks;
+mod unwatched;
 mod verified;
 pub(crate) mod waiting;
 
@@ -38,7 +39,7 @@ use crate::observation::{Observation, Vehicle};
 use choice::{allowed, most, nearest};
 use clock::{Clock, Tick};
 use core::marker::PhantomData;
-use hazard::{Hazards, Passage};
+use hazard::{Hazard, Hazards, Passage};
 use memory::Memory;
 use own::Own;
 use precedence::PairMemory;
@@ -539,8 +540,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
             in_effect,
             most: most(&self.contract, ego.speed, in_effect[1]),
         };
-        let closed = findings.closed.map_or(FAR, |closed| closed.from);
-        self.verify_again(&scene, now, deviated || recheck, closed);
+        self.verify_again(&scene, now, observation, deviated || recheck);
         let breach = if deviated {
             Some(Breach::Ego)
         } else {
@@ -550,34 +550,37 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
             breach,
             fault: findings.fault,
             unwatched: findings.closed.map(|closed| closed.number),
-            ..self.decide(&scene, (now, closed), proposal)
+            ..self.decide(&scene, now, proposal)
         }
     }
 
-    /// Voids the remembered plan unless it is safe against whoever it was not verified against.
-    fn verify_again(&mut self, scene: &Scene<'_>, now: Instant, all: bool, closed: f32) {
+    /// Voids the remembered plan unless it is safe against whoever it was not verified against, or against `all`.
+    fn verify_again(
+        &mut self,
+        scene: &Scene<'_>,
+        now: Instant,
+        observation: &Observation<'_>,
+        all: bool,
+    ) {
         let Some(plan) = self.memory.plan() else {
             return;
         };
         let contract = &self.contract;
-        let barred = !self.memory.avoids(closed);
-        let suspects = scene
-            .hazards
-            .iter()
-            .filter(|hazard| all || hazard.suspect || (barred && hazard.place == u8::MAX));
-        let mut suspects = suspects.peekable();
-        if suspects.peek().is_none() {
-            return;
-        }
         let command = allowed(&contract.ego, scene.most, next(contract, plan));
         let departure = R::departure(contract, scene.ego.speed, scene.in_effect, command);
-        let margin = spare::<R>(contract, suspects, &departure, R::tail(plan));
-        if !R::keeps(margin) {
+        let holds =
+            |hazard: &Hazard| R::keeps(spare::<R>(contract, hazard, &departure, R::tail(plan)));
+        let watched = |hazard: &&Hazard| (all || hazard.suspect) && !hazard.is_closed();
+        let watched_hold = scene.hazards.iter().filter(watched).all(holds);
+        let context = (contract, self.way);
+        let seen = (scene.ego, observation);
+        let unwatched_hold = self
+            .tracks
+            .unwatched_hold::<R>(context, seen, all, |hazards| hazards.iter().all(holds));
+        if !(watched_hold && unwatched_hold) {
             self.void();
         } else if all {
-            self.memory.confirmed(now, closed);
-        } else if barred {
-            self.memory.avoid(closed);
+            self.memory.confirmed(now);
         }
     }
 
@@ -586,12 +589,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         self.tracks.iter_mut().for_each(|other| other.counted = 0);
     }
 
-    fn decide(
-        &mut self,
-        scene: &Scene<'_>,
-        (now, closed): (Instant, f32),
-        proposal: f32,
-    ) -> Decision {
+    fn decide(&mut self, scene: &Scene<'_>, now: Instant, proposal: f32) -> Decision {
         let contract = self.contract;
         let wanted = allowed(&contract.ego, scene.most, proposal);
         let verdict = scene.check::<R>(&contract, wanted);
@@ -620,7 +618,8 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         };
         let acceleration = match found {
             Some((acceleration, verified)) => {
-                self.memory.verified(verified.plan, now, closed);
+                self.memory.verified(verified.plan, now);
+                self.tracks.unwatched_avoided();
                 self.count_on(scene.hazards, verified);
                 acceleration
             }

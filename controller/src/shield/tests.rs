@@ -88,9 +88,9 @@ fn track(site: &Site, number: u8, state: State) -> Track {
 }
 
 /// A shield at work: each call is a period after the last one.
-struct Run<'j, R: Rules = Sound> {
+struct Run<'j, R: Rules = Sound, const N: usize = 8> {
     site: &'j Site,
-    shield: Shield<'j, 8, R>,
+    shield: Shield<'j, N, R>,
     millis: u64,
 }
 
@@ -100,7 +100,7 @@ impl<'j> Run<'j> {
     }
 }
 
-impl<'j, R: Rules> Run<'j, R> {
+impl<'j, R: Rules, const N: usize> Run<'j, R, N> {
     fn with_rules(site: &'j Site, contract: Contract) -> Self {
         let shield = Shield::with_rules(contract, site, EGO).unwrap();
         let millis = 7_000;
@@ -210,7 +210,7 @@ fn a_zone_that_the_other_has_left_is_free_for_ever() {
 /// commands for as many periods and one more.
 fn blind<R: Rules>() -> (usize, std::vec::Vec<f32>) {
     let site = crossing();
-    let mut run = Run::<R>::with_rules(&site, WORST);
+    let mut run = Run::<R, 8>::with_rules(&site, WORST);
     let first = run.decide([50.0, 10.0], &[(1, [10.0, 5.0])], 3.0);
     assert_eq!(first.cause, Cause::Policy);
     let periods = usize::from(first.plan.unwrap().go);

@@ -3,15 +3,16 @@
 use super::bounds::Bounds;
 use super::contract::Contract;
 use super::door;
-use super::hazard;
+use super::hazard::{self, Hazard};
 use super::own::Own;
 use super::precedence::{PairMemory, ZoneSet, has};
 use super::rules::Rules;
+use super::unwatched::{Closed, Entry, Place, Unwatched, unplaced};
 use super::waiting::{RestState, Sighting};
 use crate::fault::Fault;
 use crate::instant::Instant;
-use crate::junction::zone::Zone;
-use crate::junction::{PathId, RouteConflict, Way};
+use crate::junction::zone::{MAX_ZONES, Zone};
+use crate::junction::{PathId, Way};
 use crate::observation::{Candidate, Observation, Track, Vehicle};
 use heapless::Vec;
 
@@ -63,56 +64,46 @@ pub(crate) struct Findings {
     pub(crate) closed: Option<Closed>,
 }
 
-/// Zones that the ego must not enter, because somebody who is not watched may be there.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Closed {
-    /// Track number of whom there is no room for.
-    pub(crate) number: u16,
-    /// Arc length (m) of the ego at which the first of them begins.
-    pub(crate) from: f32,
-}
-
-impl Findings {
-    fn close(&mut self, number: u16, from: f32) {
-        if self.closed.is_none_or(|closed| from < closed.from) {
-            self.closed = Some(Closed { number, from });
-        }
-    }
-}
-
 /// The others that matter, at most `N`.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Tracks<const N: usize>(Vec<Other, N>);
+pub(crate) struct Tracks<const N: usize> {
+    watched: Vec<Other, N>,
+    unwatched: Unwatched,
+}
 
 impl<const N: usize> Tracks<N> {
     pub(crate) const fn new() -> Self {
-        Self(Vec::new())
+        Self {
+            watched: Vec::new(),
+            unwatched: Unwatched::new(),
+        }
     }
 
     /// Everybody who is known, in fixed places; those who have left have no hazards.
     pub(crate) fn iter(&self) -> impl Iterator<Item = &Other> {
-        self.0.iter()
+        self.watched.iter()
     }
 
     pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = &mut Other> {
-        self.0.iter_mut()
+        self.watched.iter_mut()
     }
 
     /// Nobody with this number is there any more.
     pub(crate) fn forget(&mut self, number: u16) {
-        self.0.retain(|other| other.number != number);
+        self.watched.retain(|other| other.number != number);
+        self.unwatched.retain(|entry| entry.number != number);
     }
 
     /// Until `now` everybody kept to one contract, from now on to another one.
     pub(crate) fn rebase(&mut self, now: Instant) {
-        for other in &mut self.0 {
+        for other in &mut self.watched {
             (other.base, other.at) = (other.bounds, now);
         }
     }
 
     /// Where everybody may be at `now`, if nothing is seen.
     pub(crate) fn coast<R: Rules>(&mut self, contract: &Contract, now: Instant) {
-        for other in &mut self.0 {
+        for other in &mut self.watched {
             other.seen = false;
             let least = other.bounds.s.from;
             other.bounds = other.coasting::<R>(contract, now);
@@ -134,9 +125,10 @@ impl<const N: usize> Tracks<N> {
         seen: &Observation<'_>,
     ) -> Findings {
         let mut findings = Findings::default();
-        for other in &mut self.0 {
+        for other in &mut self.watched {
             other.news = News::None;
         }
+        self.unwatched.begin();
         self.coast::<R>(contract, now);
         // Who is known comes first, so that a newcomer finds as much room as there is.
         for newcomers in [false, true] {
@@ -144,10 +136,11 @@ impl<const N: usize> Tracks<N> {
                 self.note_track::<R>((contract, way), (now, ego), track, newcomers, &mut findings);
             }
         }
-        for other in &mut self.0 {
+        for other in &mut self.watched {
             let ahead = other.entry::<R>(way, ego.least, 0.0);
             other.gone |= ahead.is_none();
         }
+        findings.closed = self.unwatched.end(way, ego.least);
         findings
     }
 
@@ -163,7 +156,7 @@ impl<const N: usize> Tracks<N> {
         let number = track.number;
         if !newcomers
             && self
-                .0
+                .watched
                 .iter()
                 .any(|other| other.seen && other.number == number)
         {
@@ -171,7 +164,7 @@ impl<const N: usize> Tracks<N> {
         }
         for candidate in track.candidates() {
             // One that has appeared in this observation is a newcomer to the next track with its number, too.
-            let known = self.0.iter().any(|other| {
+            let known = self.watched.iter().any(|other| {
                 other.number == number
                     && other.path == candidate.path
                     && other.news != News::Appeared
@@ -184,8 +177,11 @@ impl<const N: usize> Tracks<N> {
         let (contract, way) = context;
         let placed = |candidate| door::track(way, contract, track, candidate).is_ok();
         if newcomers && track.candidates().any(placed) {
-            self.0.retain(|other| {
+            self.watched.retain(|other| {
                 other.number != number || other.seen || track.may_be_on(other.path)
+            });
+            self.unwatched.retain(|entry| {
+                entry.number != number || entry.seen || track.may_be_on(entry.path)
             });
         }
     }
@@ -200,13 +196,11 @@ impl<const N: usize> Tracks<N> {
         let (number, path) = (track.number, candidate.path);
         let known = |other: &&mut Other| other.number == number && other.path == path;
         let checked = door::track(way, contract, track, candidate);
-        match (self.0.iter_mut().find(known), checked) {
+        match (self.watched.iter_mut().find(known), checked) {
             // Two vehicles of one number on one path: there is no place to watch the second one.
             (Some(other), _) if other.seen => {
                 findings.fault = findings.fault.or(Some(door::twice(number)));
-                if let Some(from) = unplaced(way, (track, path), ego.least) {
-                    findings.close(number, from);
-                }
+                self.close_unplaced(way, ego, (track, path));
             }
             (Some(other), Ok(vehicle)) => other.meet(contract, &vehicle, now, findings),
             // It coasts.
@@ -219,16 +213,24 @@ impl<const N: usize> Tracks<N> {
                 // One that seems to have left may seem not to have in the next observation: it is known from now on.
                 let spare = 2.0 * contract.position_error;
                 if other.entry::<R>(way, ego.least, spare).is_some() {
-                    self.add::<R>((contract, way), ego, other, findings);
+                    self.add::<R>((contract, way), ego, other);
+                } else {
+                    self.unwatched.open(number, path);
                 }
             }
             // Nobody knows where it is: its zones may be occupied.
             (None, Err(fault)) => {
                 findings.fault = findings.fault.or(Some(fault));
-                if let Some(from) = unplaced(way, (track, path), ego.least) {
-                    findings.close(number, from);
-                }
+                self.close_unplaced(way, ego, (track, path));
             }
+        }
+    }
+
+    /// Closes the zones of somebody of whom nobody knows where it is.
+    fn close_unplaced(&mut self, way: Way<'_>, ego: &Own, (track, path): (&Track, PathId)) {
+        if let Some(from) = unplaced(way, path, track.class, ego.least) {
+            self.unwatched
+                .close(track.number, path, Place::Unknown, from);
         }
     }
 
@@ -238,9 +240,8 @@ impl<const N: usize> Tracks<N> {
         (contract, way): (&Contract, Way<'_>),
         ego: &Own,
         mut newcomer: Other,
-        findings: &mut Findings,
     ) {
-        if self.0.is_full() {
+        if self.watched.is_full() {
             // What has left by more than sensors can err in two observations will never seem not to have; and who
             // keeps its distance behind the ego is known again when it is seen again.
             let spare = 2.0 * contract.position_error;
@@ -248,21 +249,25 @@ impl<const N: usize> Tracks<N> {
                 true => other.entry::<R>(way, ego.least, spare).is_none(),
                 false => other.seen && other.unsettled::<R>(way, ego.least).is_none(),
             };
-            if let Some(place) = self.0.iter().position(idle) {
-                self.0.swap_remove(place);
+            if let Some(place) = self.watched.iter().position(idle) {
+                self.watched.swap_remove(place);
             }
         }
-        if !self.0.is_full() {
-            let _ = self.0.push(newcomer);
+        if !self.watched.is_full() {
+            if self.unwatched.open(newcomer.number, newcomer.path) {
+                newcomer.news = News::None;
+            }
+            let _ = self.watched.push(newcomer);
             return;
         }
         let Some(mut entry) = newcomer.unsettled::<R>(way, ego.least) else {
             // It has left or keeps its distance, and there is no room to remember it.
+            self.unwatched.open(newcomer.number, newcomer.path);
             return;
         };
         // A plan may count on those who are known: only among those who appear with it is there a choice.
         for other in self
-            .0
+            .watched
             .iter_mut()
             .filter(|other| other.news == News::Appeared)
         {
@@ -274,27 +279,59 @@ impl<const N: usize> Tracks<N> {
                 _ => {}
             }
         }
-        findings.close(newcomer.number, entry);
+        self.unwatched
+            .close(newcomer.number, newcomer.path, Place::Known, entry);
+    }
+
+    /// Whether the plan in force is safe from everybody who is not watched; `holds` judges it against some hazards.
+    /// Whoever it was safe from stays so, unless `all` are to be judged again.
+    pub(crate) fn unwatched_hold<R: Rules>(
+        &mut self,
+        (contract, way): (&Contract, Way<'_>),
+        (ego, seen): (&Own, &Observation<'_>),
+        all: bool,
+        holds: impl Fn(&[Hazard]) -> bool,
+    ) -> bool {
+        let stays_out = |closed| holds(&[Hazard::closed(contract, ego, closed)]);
+        for entry in self.unwatched.iter_mut().filter(|it| all || !it.holds) {
+            let Entry { number, from, .. } = *entry;
+            entry.holds = stays_out(Closed { number, from })
+                || newcomer::<R>((contract, way), (ego, seen), entry)
+                    .is_some_and(|hazards| holds(&hazards));
+        }
+        let beyond = self.unwatched.beyond();
+        self.unwatched.iter_mut().all(|entry| entry.holds) && beyond.is_none_or(stays_out)
+    }
+
+    /// A new plan stays out of everything that is closed.
+    pub(crate) fn unwatched_avoided(&mut self) {
+        self.unwatched
+            .iter_mut()
+            .for_each(|entry| entry.holds = true);
     }
 }
 
-/// Where (m) the ego enters the first zone that it has not passed at `ego` (m) with a track of which no more is known
-/// than the path, or not even that.
-fn unplaced(way: Way<'_>, (track, path): (&Track, PathId), ego: f32) -> Option<f32> {
-    let known = way
-        .path(path)
-        .is_some_and(|path| path.class() == track.class);
-    let first = |conflict: &RouteConflict| {
-        let ahead = conflict.zones().filter(|zone| ego < zone.ego.to);
-        ahead.map(|zone| zone.ego.from).reduce(f32::min)
+/// The hazards of somebody who is seen and not watched.
+fn newcomer<R: Rules>(
+    (contract, way): (&Contract, Way<'_>),
+    (ego, seen): (&Own, &Observation<'_>),
+    entry: &Entry,
+) -> Option<Vec<Hazard, MAX_ZONES>> {
+    let Entry { number, path, .. } = *entry;
+    let placed = |track: &Track| {
+        let candidate = track.candidates().find(|it| it.path == path)?;
+        door::track(way, contract, track, candidate).ok()
     };
-    match way.conflict(path).filter(|_| known) {
-        Some(conflict) => first(conflict),
-        None => way
-            .conflicts()
-            .filter_map(|(_, conflict)| first(conflict))
-            .reduce(f32::min),
-    }
+    let track = seen.tracks.iter().find(|track| track.number == number)?;
+    let vehicle = placed(track).filter(|_| entry.seen && entry.place == Place::Known)?;
+    let conflict = way.conflict(path)?;
+    let mut other = Other::new(contract, number, path, &vehicle, Instant::default());
+    hazard::settle::<R>(contract, conflict.zones(), ego, &mut other);
+    Some(
+        hazard::of::<R>(contract, conflict, ego, &other)
+            .map(|(_, hazard)| hazard)
+            .collect(),
+    )
 }
 
 impl Other {

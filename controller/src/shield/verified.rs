@@ -62,11 +62,11 @@ pub(crate) fn best<R: Rules>(
     best
 }
 
-/// Metres to spare of a given plan, after one period at the command of `departure`, against some hazards: each is passed
-/// in time, or the ego stops before it.
-pub(crate) fn spare<'h, R: Rules>(
+/// Metres to spare of a given plan, after one period at the command of `departure`, against one hazard: it is passed in
+/// time, or the ego stops before it.
+pub(crate) fn spare<R: Rules>(
     contract: &Contract,
-    hazards: impl Iterator<Item = &'h Hazard>,
+    hazard: &Hazard,
     departure: &Departure<f32>,
     plan: Plan,
 ) -> f32 {
@@ -76,17 +76,13 @@ pub(crate) fn spare<'h, R: Rules>(
     } else {
         departure.braking.rest(contract.ego.braking)
     };
-    hazards.fold(FAR, |least, hazard| {
-        let (clears, speed) = margin::clearing(contract, departure.least, hazard.target);
-        let in_time = clears <= HORIZON && margin::periods(contract, clears) <= plan.go;
-        let stops = R::stops_short(contract, hazard.limit, rest);
-        let margin = if in_time {
-            Real::max(stops, passage_margin::<R>(contract, hazard, clears, speed))
-        } else {
-            stops
-        };
-        Real::min(least, margin)
-    })
+    let stops = R::stops_short(contract, hazard.limit, rest);
+    let (clears, speed) = margin::clearing(contract, departure.least, hazard.target);
+    if clears <= HORIZON && margin::periods(contract, clears) <= plan.go {
+        Real::max(stops, passage_margin::<R>(contract, hazard, clears, speed))
+    } else {
+        stops
+    }
 }
 
 /// Metres to spare when the ego has cleared `hazard` at `clears` (s from now) with `ego_speed`.

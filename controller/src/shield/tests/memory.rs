@@ -90,7 +90,7 @@ impl Rules for Amnesia {
 fn one_that_is_missing_is_still_somewhere() {
     fn margin<R: Rules>() -> f32 {
         let site = crossing();
-        let mut run = Run::<R>::with_rules(&site, WORST);
+        let mut run = Run::<R, 8>::with_rules(&site, WORST);
         run.decide([40.0, 5.0], &[(1, [40.0, 5.0])], -3.0);
         run.decide([40.5, 5.0], &[], 3.0).margin
     }
@@ -165,6 +165,58 @@ fn without_room_the_nearest_unwatched_zone_is_closed() {
         "it has to stop before the third zone"
     );
     assert!(decision.to_string().ends_with("no room to watch other 3"));
+}
+
+/// Three paths that the ego crosses, the first two at nearly one place.
+fn crowded() -> Site {
+    let north = |x: f32| route(&[(x, -60.0), (x, 60.0)]);
+    site(&[east(), north(0.0), north(-1.0), north(24.0)])
+}
+
+#[test]
+fn one_without_room_leaves_a_plan_that_passes_it_in_time() {
+    let site = crowded();
+    // Its zone comes before where the plan rests, so that to close it bars the plan.
+    for (newcomer, kept) in [([0.0, 5.0], true), ([52.0, 8.0], false)] {
+        let mut run = Run::<Sound, 1>::with_rules(&site, WORST);
+        let first = run.decide([50.0, 10.0], &[(1, [10.0, 5.0])], 3.0);
+        assert_eq!(first.cause, Cause::Policy);
+        let decision = run.decide(NEXT, &[(1, OTHER), (2, newcomer)], f32::NAN);
+        assert_eq!(decision.unwatched, Some(2));
+        assert_eq!(decision.plan.is_some(), kept, "{decision:?}");
+        if kept {
+            // It gets the room of the first one, which is known not to be there.
+            run.shield.forget(1);
+            let newcomer = [newcomer[0] + 0.5, 5.0];
+            let decision = run.decide([52.05, 10.3], &[(2, newcomer)], f32::NAN);
+            assert_eq!(decision.unwatched, None);
+            assert!(decision.plan.is_some(), "{decision:?}");
+        }
+    }
+}
+
+#[test]
+fn zones_of_one_without_room_stay_closed_while_it_is_missing() {
+    let site = crowded();
+    let mut run = Run::<Sound, 1>::with_rules(&site, WORST);
+    let first = (1, [1.0, 0.0]);
+    let closed = |decision: Decision| decision.unwatched;
+    assert_eq!(
+        closed(run.decide([20.0, 0.0], &[first, (3, [1.0, 0.0])], 0.0)),
+        Some(3)
+    );
+    assert_eq!(closed(run.decide([20.0, 0.0], &[first], 0.0)), Some(3));
+    // Seen again, and past its zone.
+    assert_eq!(
+        closed(run.decide([20.0, 0.0], &[first, (3, [90.0, 0.0])], 0.0)),
+        None
+    );
+    assert_eq!(
+        closed(run.decide([20.0, 0.0], &[first, (2, [1.0, 0.0])], 0.0)),
+        Some(2)
+    );
+    run.shield.forget(2);
+    assert_eq!(closed(run.decide([20.0, 0.0], &[first], 0.0)), None);
 }
 
 #[test]

@@ -1,0 +1,160 @@
+//! Vehicles that matter and for whom there is no room: their zones are closed.
+
+use crate::junction::zone::Zone;
+use crate::junction::{Class, PathId, RouteConflict, Way};
+use crate::real::Real;
+use heapless::Vec;
+
+/// So many of them are remembered while they are not seen.
+const ROOM: usize = 16;
+
+/// Zones that the ego must not enter, because somebody who is not watched may be there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Closed {
+    /// Track number of who is not watched.
+    pub(crate) number: u16,
+    /// Arc length (m) of the ego at which the first of them begins.
+    pub(crate) from: f32,
+}
+
+/// A vehicle that is not watched, on one of its paths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Entry {
+    pub(super) number: u16,
+    pub(super) path: PathId,
+    pub(super) place: Place,
+    /// Arc length (m) of the ego at which the first of its zones begins.
+    pub(super) from: f32,
+    /// It is in the present observation.
+    pub(super) seen: bool,
+    /// The plan in force is safe from it.
+    pub(super) holds: bool,
+}
+
+/// What is known of where an unwatched vehicle is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    /// On its path.
+    Known,
+    /// Nothing. One that is not seen again was perhaps never there.
+    Unknown,
+}
+
+/// Everybody who is not watched.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Unwatched {
+    entries: Vec<Entry, ROOM>,
+    /// The first zones of those whom there is no room to remember either.
+    beyond: Option<Closed>,
+}
+
+impl Unwatched {
+    pub(super) const fn new() -> Self {
+        Self {
+            entries: Vec::new(),
+            beyond: None,
+        }
+    }
+
+    pub(super) fn iter_mut(&mut self) -> impl Iterator<Item = &mut Entry> {
+        self.entries.iter_mut()
+    }
+
+    /// The first zones of those who are not remembered.
+    pub(super) const fn beyond(&self) -> Option<Closed> {
+        self.beyond
+    }
+
+    /// A new observation begins: nobody has been seen in it yet.
+    pub(super) fn begin(&mut self) {
+        self.entries.iter_mut().for_each(|entry| entry.seen = false);
+        self.beyond = None;
+    }
+
+    /// One is seen whose first zone begins at `from` (m).
+    pub(super) fn close(&mut self, number: u16, path: PathId, place: Place, from: f32) {
+        let key = (number, path, place);
+        let known = |entry: &&mut Entry| (entry.number, entry.path, entry.place) == key;
+        if let Some(entry) = self.entries.iter_mut().find(known) {
+            // The same twice: both count.
+            entry.from = if entry.seen {
+                Real::min(entry.from, from)
+            } else {
+                from
+            };
+            entry.seen = true;
+            return;
+        }
+        let entry = Entry {
+            number,
+            path,
+            place,
+            from,
+            seen: true,
+            holds: false,
+        };
+        if self.entries.push(entry).is_err() {
+            self.beyond = sooner(self.beyond, Closed { number, from });
+        }
+    }
+
+    /// One is watched from now on, or matters no more. Whether the plan in force is safe from it.
+    pub(super) fn open(&mut self, number: u16, path: PathId) -> bool {
+        let it = |entry: &Entry| (entry.number, entry.path) == (number, path);
+        let holds = self.entries.iter().any(|entry| it(entry) && entry.holds);
+        self.entries.retain(|entry| !it(entry));
+        holds
+    }
+
+    /// Forgets whoever `stays` is false for.
+    pub(super) fn retain(&mut self, stays: impl Fn(&Entry) -> bool) {
+        self.entries.retain(stays);
+    }
+
+    /// An observation ends. Who is missing in it is somewhere on its path; the first zone that is closed for an ego at
+    /// `ego` (m).
+    pub(super) fn end(&mut self, way: Way<'_>, ego: f32) -> Option<Closed> {
+        let ahead = |path| way.conflict(path).and_then(|it| first_zone(it, ego));
+        self.entries
+            .retain(|it| it.seen || (it.place == Place::Known && ahead(it.path).is_some()));
+        for entry in self.entries.iter_mut().filter(|entry| !entry.seen) {
+            if let Some(from) = ahead(entry.path) {
+                entry.from = from;
+            }
+        }
+        self.entries.iter().fold(self.beyond, |first, entry| {
+            let Entry { number, from, .. } = *entry;
+            sooner(first, Closed { number, from })
+        })
+    }
+}
+
+/// The one of which the zones begin first.
+fn sooner(first: Option<Closed>, other: Closed) -> Option<Closed> {
+    first
+        .filter(|first| first.from <= other.from)
+        .or(Some(other))
+}
+
+/// Where (m) the ego, at `ego` (m), enters the first zone that it has not passed.
+fn first_zone(conflict: &RouteConflict, ego: f32) -> Option<f32> {
+    let ahead = |zone: &&Zone| ego < zone.ego.to;
+    conflict
+        .zones()
+        .filter(ahead)
+        .map(|zone| zone.ego.from)
+        .reduce(Real::min)
+}
+
+/// Where (m) the ego, at `ego` (m), enters the first zone with somebody of whom no more is known than the path and the
+/// class, or not even that.
+pub(super) fn unplaced(way: Way<'_>, path: PathId, class: Class, ego: f32) -> Option<f32> {
+    let known = way.path(path).is_some_and(|path| path.class() == class);
+    match way.conflict(path).filter(|_| known) {
+        Some(conflict) => first_zone(conflict, ego),
+        None => way
+            .conflicts()
+            .filter_map(|(_, conflict)| first_zone(conflict, ego))
+            .reduce(Real::min),
+    }
+}
