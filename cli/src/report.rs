@@ -105,11 +105,15 @@ impl Report {
     }
 
     /// Adds the shares of recorded steps in `dataset` that the shield accepts, under variants of `contract`.
-    pub(crate) fn sweep(&mut self, dataset: &Dataset, contract: Contract) {
+    ///
+    /// # Errors
+    /// If one of the variants is no contract.
+    pub(crate) fn sweep(&mut self, dataset: &Dataset, contract: Contract) -> Result<(), Failure> {
         let encounters: Vec<&Encounter> = dataset.encounters.iter().collect();
-        // Every contract with a name is valid.
-        let rows = transparency::sweep(&encounters, contract).unwrap_or_default();
+        let rows = transparency::sweep(&encounters, contract)
+            .map_err(|error| Failure::input(error, "choose another contract"))?;
         self.page.sweep = Panel::all(&rows);
+        Ok(())
     }
 
     /// Adds learning curves.

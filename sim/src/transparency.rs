@@ -63,15 +63,26 @@ pub struct Swept {
 /// [`transparency`] under contracts that differ from `contract` in the other's acceleration
 /// (0.5 … 4 m/s²) and the ego's braking (3 … 8 m/s²).
 ///
+/// A contract's ego accelerates and brakes no harder than the others: where the sweep asks for less of them, the ego's
+/// acceleration is cut, and where the ego brakes harder, so do they. A recorded acceleration counts as the hardest one
+/// that the ego may then command.
+///
 /// # Errors
 /// If `contract` does not allow for one of them.
 pub fn sweep(encounters: &[&Encounter], contract: Contract) -> Result<Vec<Swept>, ContractError> {
     let grid = (1..=8_u8).flat_map(|half| (3..=8_u8).map(move |braking| (half, braking)));
     let contracts: Vec<Contract> = grid
         .map(|(half, braking)| {
-            let numbers = contract.to_builder();
-            let numbers = numbers.other_acceleration(0.5 * f32::from(half));
-            numbers.ego_braking(f32::from(braking)).build()
+            let (acceleration, braking) = (0.5 * f32::from(half), f32::from(braking));
+            let (ego, other) = (contract.ego(), contract.other());
+            let numbers = contract
+                .to_builder()
+                .other_acceleration(acceleration)
+                .ego_acceleration(ego.acceleration.min(acceleration))
+                .ego_go(ego.go.min(acceleration))
+                .ego_braking(braking)
+                .other_braking(other.braking.max(braking));
+            numbers.build()
         })
         .collect::<Result<_, _>>()?;
     let tables = tables(encounters, &contracts);

@@ -41,7 +41,7 @@ pub(crate) fn run() -> Result<(), Failure> {
         rows.extend(plan.judge(&dataset, |row, drives| report.add(row, drives))?);
     }
     print!("{}", table::render(&rows, false));
-    report.sweep(&dataset, Contract::WORST_CASE);
+    report.sweep(&dataset, Contract::WORST_CASE)?;
     let page = Path::new(REPORT);
     report.write(page)?;
     println!("The report, with replays and charts: {REPORT}");

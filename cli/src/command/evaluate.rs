@@ -98,7 +98,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     if let (Some(mut report), Some(path)) = (report, &args.report) {
         if args.shield != ShieldName::Off {
-            report.sweep(&dataset, args.contract.unwrap_or_default().into());
+            report.sweep(&dataset, args.contract.unwrap_or_default().into())?;
         }
         report.write(path)?;
     }

@@ -58,12 +58,13 @@ impl Shield {
             }
         }
         if let Some(file) = &self.sweep {
-            let rows = sweep(&encounters, Contract::WORST_CASE).unwrap_or_default();
+            let rows = sweep(&encounters, Contract::WORST_CASE)
+                .map_err(|error| Failure::input(error, "report this as a bug"))?;
             cede_data::output::write(file, |out| csv(out, &rows))?;
         }
         if let Some(file) = &self.report {
             let mut report = Report::showing(Vec::new(), &data, &command());
-            report.sweep(&data, Contract::WORST_CASE);
+            report.sweep(&data, Contract::WORST_CASE)?;
             report.write(file)?;
         }
         judge(&worst)
