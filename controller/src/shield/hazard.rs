@@ -100,9 +100,13 @@ impl Hazards {
                     open = [Real::min(open[0], entry), Real::max(open[1], hazard.target)];
                     continue;
                 }
+                let clear = clear_of::<R>(conflict, zone, ego, other);
+                let clear = clear - ego.s - contract.position_error;
+                let waits = !zone.is_lane() && clear >= 0.0;
                 self.insert::<R>(Hazard {
                     place,
                     yields: conflict.right_of_way == RightOfWay::Other,
+                    rest: if waits { clear } else { hazard.rest },
                     ..hazard
                 });
             }
@@ -119,11 +123,11 @@ impl Hazards {
     /// In zones that precedence opens, the ego waits only for those who have the right of way. Whoever it holds up there
     /// may hold up others: if all waited so, each in the way of the next, their rights would form a cycle.
     ///
-    /// It may still come to rest there behind those who share its lane.
+    /// It may still come to rest there behind those who are ahead in its lane.
     fn keep_clear(&mut self, [from, to]: [f32; 2]) {
         for hazard in &mut self.sorted {
-            let crosses = matches!(hazard.passage, Passage::Before { .. });
-            if crosses && !hazard.yields && (from..to).contains(&hazard.limit) {
+            let waits = !matches!(hazard.passage, Passage::Never);
+            if waits && !hazard.yields && (from..to).contains(&hazard.limit) {
                 hazard.rest = from;
             }
         }
@@ -195,6 +199,22 @@ pub(super) fn of<'z, R: Rules>(
     zones.filter_map(move |(index, zone)| {
         let hazard = hazard::<R>(contract, (index, zone), ego, other)?;
         Some((zone, hazard))
+    })
+}
+
+/// Arc length (m) at which the ego waits for `other` before the crossing `zone`: where crossings of the two follow each other without
+/// a gap, before the first of them. Two that stood in different ones, each before the other's, would wait for ever.
+fn clear_of<R: Rules>(conflict: &RouteConflict, zone: &Zone, ego: &Own, other: &Other) -> f32 {
+    if zone.is_lane() {
+        return zone.ego.from;
+    }
+    let open =
+        |it: &&Zone| !it.is_lane() && ego.least < it.ego.to && !R::left(it, other.bounds.s.from);
+    // As often as there are zones before the last one.
+    (1..MAX_ZONES).fold(zone.ego.from, |from, _| {
+        let meets = |it: &&Zone| it.ego.from < from && from <= it.ego.to;
+        let before = conflict.zones().filter(open).filter(meets);
+        before.map(|it| it.ego.from).fold(from, Real::min)
     })
 }
 
