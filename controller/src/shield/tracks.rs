@@ -245,9 +245,10 @@ impl<const N: usize> Tracks<N> {
             // What has left by more than sensors can err in two observations will never seem not to have; and who
             // keeps its distance behind the ego is known again when it is seen again.
             let spare = 2.0 * contract.position_error;
-            let idle = |other: &Other| match other.gone {
-                true => other.entry::<R>(way, ego.least, spare).is_none(),
-                false => other.seen && other.unsettled::<R>(way, ego.least).is_none(),
+            let idle = |other: &Other| {
+                let open = other.unsettled::<R>(way, ego.least, spare);
+                let left = other.entry::<R>(way, ego.least, spare).is_none();
+                open.is_none() && (other.seen || left)
             };
             if let Some(place) = self.watched.iter().position(idle) {
                 self.watched.swap_remove(place);
@@ -260,7 +261,7 @@ impl<const N: usize> Tracks<N> {
             let _ = self.watched.push(newcomer);
             return;
         }
-        let Some(mut entry) = newcomer.unsettled::<R>(way, ego.least) else {
+        let Some(mut entry) = newcomer.unsettled::<R>(way, ego.least, 0.0) else {
             // It has left or keeps its distance, and there is no room to remember it.
             self.unwatched.open(newcomer.number, newcomer.path);
             return;
@@ -271,7 +272,7 @@ impl<const N: usize> Tracks<N> {
             .iter_mut()
             .filter(|other| other.news == News::Appeared)
         {
-            match other.unsettled::<R>(way, ego.least) {
+            match other.unsettled::<R>(way, ego.least, 0.0) {
                 Some(its) if its > entry => {
                     core::mem::swap(other, &mut newcomer);
                     entry = its;
@@ -419,9 +420,10 @@ impl Other {
         zones.map(|zone| zone.ego.from).reduce(f32::min)
     }
 
-    /// Where (m) the ego enters the first zone ahead in which the other does not just keep its distance.
-    fn unsettled<R: Rules>(&self, way: Way<'_>, ego: f32) -> Option<f32> {
-        let ahead = |zone: &Zone| ego < zone.ego.to && !R::left(zone, self.bounds.s.from);
+    /// [`Other::entry`] of the zones in which the other does not just keep its distance.
+    fn unsettled<R: Rules>(&self, way: Way<'_>, ego: f32, spare: f32) -> Option<f32> {
+        let least = self.bounds.s.from - spare;
+        let ahead = |zone: &Zone| ego - spare < zone.ego.to && !R::left(zone, least);
         let zones = (0_u8..).zip(way.conflict(self.path)?.zones());
         let open = zones.filter(|&(index, zone)| ahead(zone) && !self.is_settled(index));
         open.map(|(_, zone)| zone.ego.from).reduce(f32::min)
