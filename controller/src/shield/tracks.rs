@@ -11,7 +11,7 @@ use super::unwatched::{Closed, Entry, Place, Unwatched, unplaced};
 use super::waiting::{RestState, Sighting};
 use crate::fault::Fault;
 use crate::instant::Instant;
-use crate::junction::zone::{MAX_ZONES, Zone};
+use crate::junction::zone::{FAR, MAX_ZONES, Zone};
 use crate::junction::{PathId, Way};
 use crate::observation::{Candidate, Observation, Track, Vehicle};
 use heapless::Vec;
@@ -241,10 +241,10 @@ impl<const N: usize> Tracks<N> {
         ego: &Own,
         mut newcomer: Other,
     ) {
+        let spare = 2.0 * contract.position_error;
         if self.watched.is_full() {
             // What has left by more than sensors can err in two observations will never seem not to have; and who
             // keeps its distance behind the ego is known again when it is seen again.
-            let spare = 2.0 * contract.position_error;
             let idle = |other: &Other| {
                 let open = other.unsettled::<R>(way, ego.least, spare);
                 let left = other.entry::<R>(way, ego.least, spare).is_none();
@@ -261,9 +261,13 @@ impl<const N: usize> Tracks<N> {
             let _ = self.watched.push(newcomer);
             return;
         }
+        let (number, path) = (newcomer.number, newcomer.path);
         let Some(mut entry) = newcomer.unsettled::<R>(way, ego.least, 0.0) else {
-            // It has left or keeps its distance, and there is no room to remember it.
-            self.unwatched.open(newcomer.number, newcomer.path);
+            // It has left or keeps its distance, and there is no room to remember it, unless it may seem not to have.
+            match newcomer.unsettled::<R>(way, ego.least, spare) {
+                Some(_) => self.unwatched.close(number, path, Place::Known, FAR),
+                None => _ = self.unwatched.open(number, path),
+            }
             return;
         };
         // A plan may count on those who are known: only among those who appear with it is there a choice.

@@ -1,6 +1,6 @@
 //! Vehicles that matter and for whom there is no room: their zones are closed.
 
-use crate::junction::zone::Zone;
+use crate::junction::zone::{FAR, Zone};
 use crate::junction::{Class, PathId, RouteConflict, Way};
 use crate::real::Real;
 use heapless::Vec;
@@ -23,7 +23,7 @@ pub(super) struct Entry {
     pub(super) number: u16,
     pub(super) path: PathId,
     pub(super) place: Place,
-    /// Arc length (m) of the ego at which the first of its zones begins.
+    /// Arc length (m) of the ego at which the first of its zones begins; [`FAR`] if it has just left them.
     pub(super) from: f32,
     /// It is in the present observation.
     pub(super) seen: bool,
@@ -122,7 +122,8 @@ impl Unwatched {
                 entry.from = from;
             }
         }
-        self.entries.iter().fold(self.beyond, |first, entry| {
+        let closed = self.entries.iter().filter(|entry| entry.from < FAR);
+        closed.fold(self.beyond, |first, entry| {
             let Entry { number, from, .. } = *entry;
             sooner(first, Closed { number, from })
         })
