@@ -1,5 +1,6 @@
 //! Judges every driver on every split: the rows of the table, with progress on stderr.
 
+use crate::contract::Named;
 use crate::drivers::Contender;
 use crate::failure::Failure;
 use crate::interrupt;
@@ -68,35 +69,13 @@ impl ShieldName {
     ///
     /// # Errors
     /// There is a contract but no shield.
-    pub(crate) fn shields(
-        self,
-        contract: Option<ContractName>,
-    ) -> Result<Vec<Option<Contract>>, Failure> {
-        let assumed = Some(contract.unwrap_or_default().into());
+    pub(crate) fn shields(self, contract: Option<Named>) -> Result<Vec<Option<Contract>>, Failure> {
+        let assumed = Some(contract.unwrap_or_default().0);
         match self {
             Self::Off if contract.is_some() => Err(Failure::ignored("--contract", "--shield off")),
             Self::Off => Ok(vec![None]),
             Self::On => Ok(vec![assumed]),
             Self::Both => Ok(vec![None, assumed]),
-        }
-    }
-}
-
-/// The shield's contract: what it assumes of the other vehicles.
-#[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ContractName {
-    /// Others may cross at any time, whoever has the right of way
-    #[default]
-    WorstCase,
-    /// Whoever arrived first goes first
-    AllWayStop,
-}
-
-impl From<ContractName> for Contract {
-    fn from(name: ContractName) -> Self {
-        match name {
-            ContractName::WorstCase => Self::WORST_CASE,
-            ContractName::AllWayStop => Self::ALL_WAY_STOP,
         }
     }
 }

@@ -4,6 +4,7 @@
 mod stdout;
 
 mod command;
+mod contract;
 mod drivers;
 mod failure;
 mod interrupt;

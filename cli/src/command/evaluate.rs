@@ -2,9 +2,10 @@
 
 mod episodes;
 
+use crate::contract::Named;
 use crate::drivers::Drivers;
 use crate::failure::Failure;
-use crate::judge::{ContractName, ModeName, Plan, ShieldName, UntilName};
+use crate::judge::{ModeName, Plan, ShieldName, UntilName};
 use crate::report::{Report, command};
 use crate::source::{Source, not_empty};
 use crate::table;
@@ -41,8 +42,8 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value_t = ShieldName::Off)]
     shield: ShieldName,
     /// The shield's contract: what it assumes of the other vehicles [default: worst-case]
-    #[arg(long, value_enum)]
-    contract: Option<ContractName>,
+    #[arg(long, value_name = "NAME|FILE")]
+    contract: Option<Named>,
     /// The policy of the driver `cede`
     #[arg(long, value_name = "FILE.cede")]
     weights: Option<PathBuf>,
@@ -98,7 +99,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     if let (Some(mut report), Some(path)) = (report, &args.report) {
         if args.shield != ShieldName::Off {
-            report.sweep(&dataset, args.contract.unwrap_or_default().into())?;
+            report.sweep(&dataset, args.contract.unwrap_or_default().0)?;
         }
         report.write(path)?;
     }

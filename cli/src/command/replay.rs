@@ -2,9 +2,10 @@
 
 mod numbers;
 
+use crate::contract::Named;
 use crate::drivers::{Contender, Drivers};
 use crate::failure::Failure;
-use crate::judge::{ContractName, ShieldName};
+use crate::judge::ShieldName;
 use crate::left_out;
 use crate::report::{Report, command};
 use cede_controller::Contract;
@@ -32,8 +33,8 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value_t = ShieldName::Off)]
     shield: ShieldName,
     /// The shield's contract: what it assumes of the other vehicles [default: worst-case]
-    #[arg(long, value_enum)]
-    contract: Option<ContractName>,
+    #[arg(long, value_name = "NAME|FILE")]
+    contract: Option<Named>,
     /// The policy of the driver `cede`
     #[arg(long, value_name = "FILE.cede")]
     weights: Option<PathBuf>,

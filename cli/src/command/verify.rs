@@ -1,5 +1,6 @@
 //! `cede verify`: proofs, and the check of proofs.
 
+mod beyond;
 mod campaign;
 mod check;
 mod lemmas;
@@ -31,6 +32,8 @@ pub(crate) enum Verify {
     Shield(shield::Shield),
     /// Do shielded vehicles stay free of collisions among adversaries?
     Campaign(campaign::Campaign),
+    /// How often does the shield fail when a number of its contract does not hold?
+    Beyond(beyond::Beyond),
 }
 
 impl Verify {
@@ -45,6 +48,7 @@ impl Verify {
             Self::Check(check) => check.run(),
             Self::Shield(shield) => shield.run(),
             Self::Campaign(campaign) => campaign.run(),
+            Self::Beyond(beyond) => beyond.run(),
         }
     }
 }

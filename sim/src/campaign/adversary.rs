@@ -89,7 +89,7 @@ impl Adversary {
     }
 
     /// The duty of one who finds the ego ahead in the lane: after the reaction time it brakes.
-    fn must_brake(&mut self, scenario: &Scenario, states: &[State], me: usize) -> bool {
+    pub(super) fn must_brake(&mut self, scenario: &Scenario, states: &[State], me: usize) -> bool {
         let contract = &scenario.setup.contract;
         let (ego, mine) = (states[0], states[me]);
         let too_near = zones(scenario, me).filter(|z| z.is_lane()).any(|zone| {

@@ -5,6 +5,7 @@
 //! black out, all within the contract. An overlap, as rapier2d sees it, is then the shield's fault.
 
 mod adversary;
+pub mod beyond;
 mod scenario;
 
 pub use scenario::{Scenario, Setup};

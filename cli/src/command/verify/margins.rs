@@ -1,5 +1,6 @@
 //! `cede verify margins`.
 
+use crate::contract::Named;
 use crate::failure::Failure;
 use crate::threads::Threads;
 use cede_controller::Contract;
@@ -39,6 +40,9 @@ pub(crate) struct Margins {
     /// Maximum number of input boxes per predicate; more boxes give sharper bounds.
     #[arg(long, default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..))]
     boxes: u64,
+    /// Only the predicates of this contract.
+    #[arg(long, value_name = "NAME|FILE")]
+    contract: Option<Named>,
     #[command(flatten)]
     threads: Threads,
     /// Print one JSON object instead.
@@ -58,7 +62,7 @@ impl Margins {
     /// Runs the command.
     pub(crate) fn run(self) -> Result<(), Failure> {
         self.threads.start()?;
-        let short = shortfall(&Contract::WORST_CASE);
+        let short = shortfall(&self.contract.unwrap_or_default().0);
         let rows = self.rows();
         // A closed pipe (`| head`) is not an error.
         let _ = writeln!(std::io::stdout(), "{}", self.told(&rows, short));
@@ -78,7 +82,11 @@ impl Margins {
     }
 
     fn rows(&self) -> Vec<MarginRow> {
-        let all = CONTRACTS
+        let contracts = match self.contract {
+            Some(Named(contract)) => vec![("as given", contract)],
+            None => CONTRACTS.to_vec(),
+        };
+        let all = contracts
             .iter()
             .flat_map(|contract| Predicate::ALL.map(|predicate| (contract, predicate)));
         all.map(|((name, contract), predicate)| {

@@ -1,5 +1,6 @@
 //! `cede verify shield`: the share of recorded steps that the shield accepts.
 
+use crate::contract::Named;
 use crate::failure::Failure;
 use crate::left_out;
 use crate::report::{Report, command};
@@ -26,6 +27,9 @@ pub(crate) struct Shield {
     /// Site of the recordings.
     #[arg(long, default_value = "EP0")]
     site: String,
+    /// Only this contract, without a bar; worst-case and three that differ from it in one number, unless it is given
+    #[arg(long, value_name = "NAME|FILE")]
+    contract: Option<Named>,
     /// Also write the shares for other values of acceleration and braking to this CSV file.
     #[arg(long, value_name = "FILE")]
     sweep: Option<PathBuf>,
@@ -43,7 +47,11 @@ impl Shield {
         left_out::tell(&encounters);
         println!("contract          kind       role    steps  accepted");
         let mut worst = Vec::new();
-        for (name, contract) in contracts() {
+        let contracts = match self.contract {
+            Some(Named(contract)) => vec![("as given", contract)],
+            None => contracts().to_vec(),
+        };
+        for (name, contract) in contracts {
             let rows = transparency(&encounters, contract);
             for row in &rows {
                 let (kind, role) = (format!("{:?}", row.kind), format!("{:?}", row.role));
@@ -58,13 +66,13 @@ impl Shield {
             }
         }
         if let Some(file) = &self.sweep {
-            let rows = sweep(&encounters, Contract::WORST_CASE)
+            let rows = sweep(&encounters, self.contract.unwrap_or_default().0)
                 .map_err(|error| Failure::input(error, "report this as a bug"))?;
             cede_data::output::write(file, |out| csv(out, &rows))?;
         }
         if let Some(file) = &self.report {
             let mut report = Report::showing(Vec::new(), &data, &command());
-            report.sweep(&data, Contract::WORST_CASE)?;
+            report.sweep(&data, self.contract.unwrap_or_default().0)?;
             report.write(file)?;
         }
         judge(&worst)

@@ -1,0 +1,145 @@
+//! `cede verify beyond`: encounters in which one number of the contract does not hold.
+
+use crate::contract::Named;
+use crate::failure::Failure;
+use crate::threads::Threads;
+use cede_sim::campaign::beyond::{Count, Guard, ROWS, Row, Temper, beyond};
+use clap::Args;
+use std::io::Write as _;
+
+/// The text below the options in `cede help verify beyond`.
+const HELP: &str = "\
+Each cell is the percentage of encounters that end in a collision, and the mean speed of these in m/s, one vehicle
+relative to the other. The same encounters are driven without a guard, behind a plain rule that brakes if two times
+overlap, and behind the shield. `flagged` is the share of the shield's collisions before which it said that its
+contract is broken, its input wrong, or no plan safe.
+
+Exit code 1 if the shield collides within the contract.";
+
+/// Options of `cede verify beyond`.
+#[derive(Args)]
+#[command(after_help = HELP)]
+pub(crate) struct Beyond {
+    /// The shield's contract [default: worst-case]
+    #[arg(long, value_name = "NAME|FILE")]
+    contract: Option<Named>,
+    /// Encounters of each cell; those that begin without a safe plan do not count.
+    #[arg(long, default_value_t = 2000, value_parser = clap::value_parser!(u64).range(1..))]
+    encounters: u64,
+    /// Seed of the first encounter.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    #[command(flatten)]
+    threads: Threads,
+    /// Print one JSON object instead.
+    #[arg(long)]
+    json: bool,
+}
+
+/// A row of the table for one temper of the others.
+struct Line {
+    row: Row,
+    temper: Temper,
+    /// In the order of [`Guard::ALL`].
+    counts: [Count; 3],
+}
+
+impl Beyond {
+    /// Runs the command.
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        self.threads.start()?;
+        let contract = self.contract.unwrap_or_default().0;
+        let mut lines = Vec::new();
+        for row in ROWS {
+            eprintln!("{} …", row.name);
+            for temper in [Temper::Hostile, Temper::Gentle] {
+                let counts = Guard::ALL.map(|guard| {
+                    let driven = (guard, temper);
+                    beyond(contract, row.deviation, driven, self.encounters, self.seed)
+                });
+                lines.push(Line {
+                    row,
+                    temper,
+                    counts,
+                });
+            }
+        }
+        // A closed pipe (`| head`) is not an error.
+        let _ = writeln!(std::io::stdout(), "{}", self.told(&lines));
+        let within: u64 = lines
+            .iter()
+            .filter(|line| line.row == ROWS[0])
+            .map(|line| line.counts[2].collisions)
+            .sum();
+        match within {
+            0 => Ok(()),
+            _ => Err(Failure::Check(format!(
+                "{within} collisions within the contract"
+            ))),
+        }
+    }
+
+    fn told(&self, lines: &[Line]) -> String {
+        if self.json {
+            let rows: Vec<_> = lines.iter().map(Line::json).collect();
+            return serde_json::json!({ "seed": self.seed, "rows": rows }).to_string();
+        }
+        let n = lines.first().map_or(0, |line| line.counts[2].encounters);
+        let mut text = vec![
+            format!("{n} encounters a cell; collisions in %, and their speed in m/s"),
+            format!(
+                "{:<33} {:<8} {:>12} {:>12} {:>12} {:>8}",
+                "beyond the contract", "others", "no guard", "plain rule", "shield", "flagged"
+            ),
+        ];
+        text.extend(lines.iter().map(Line::text));
+        text.join("\n")
+    }
+}
+
+impl Line {
+    fn temper(&self) -> &'static str {
+        match self.temper {
+            Temper::Hostile => "hostile",
+            Temper::Gentle => "gentle",
+        }
+    }
+
+    fn text(&self) -> String {
+        let [none, plain, shield] = self.counts.map(|count| {
+            if count.collisions == 0 {
+                return "0".to_owned();
+            }
+            let share = count.share().fraction().unwrap_or_default();
+            format!("{:.1} / {:.1}", 100.0 * share, count.impact_speed())
+        });
+        let flagged = match self.counts[2] {
+            Count { collisions: 0, .. } => String::new(),
+            Count {
+                collisions,
+                flagged,
+                ..
+            } => format!("{:.0} %", 100.0 * flagged as f64 / collisions as f64),
+        };
+        format!(
+            "{:<33} {:<8} {none:>12} {plain:>12} {shield:>12} {flagged:>8}",
+            self.row.name,
+            self.temper()
+        )
+    }
+
+    fn json(&self) -> serde_json::Value {
+        let cell = |count: Count| {
+            let share = count.share();
+            serde_json::json!({
+                "encounters": count.encounters, "collisions": count.collisions, "flagged": count.flagged,
+                "share": share.fraction(), "share_95": share.interval(), "impact_m_s": count.impact_speed(),
+            })
+        };
+        let [none, plain, shield] = self.counts.map(cell);
+        serde_json::json!({
+            "beyond": self.row.name, "others": self.temper(),
+            "no_guard": none, "plain_rule": plain, "shield": shield,
+        })
+    }
+}

@@ -1,0 +1,112 @@
+//! The contract that the user names: one with a name, or one in a TOML file.
+
+use cede_controller::Contract;
+use clap::builder::{PossibleValue, TypedValueParser, ValueParserFactory};
+use std::path::Path;
+
+/// The contracts with a name, and what they say.
+const NAMED: [(&str, Contract, &str); 2] = [
+    (
+        "worst-case",
+        Contract::WORST_CASE,
+        "Others may cross at any time, whoever has the right of way",
+    ),
+    (
+        "all-way-stop",
+        Contract::ALL_WAY_STOP,
+        "Whoever arrived first goes first",
+    ),
+];
+
+/// A contract that was named on the command line.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Named(pub(crate) Contract);
+
+impl Default for Named {
+    fn default() -> Self {
+        Self(Contract::WORST_CASE)
+    }
+}
+
+/// Reads [`Named`] from a name or the path of a file.
+#[derive(Clone, Copy)]
+pub(crate) struct Parser;
+
+impl ValueParserFactory for Named {
+    type Parser = Parser;
+
+    fn value_parser() -> Parser {
+        Parser
+    }
+}
+
+impl TypedValueParser for Parser {
+    type Value = Named;
+
+    fn parse_ref(
+        &self,
+        command: &clap::Command,
+        argument: Option<&clap::Arg>,
+        value: &std::ffi::OsStr,
+    ) -> Result<Named, clap::Error> {
+        let read = |text: &str| read(text);
+        clap::builder::StringValueParser::new()
+            .try_map(move |text| read(&text))
+            .parse_ref(command, argument, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        let values = NAMED.map(|(name, _, help)| PossibleValue::new(name).help(help));
+        let file = PossibleValue::new("FILE.toml").help("The numbers of a file; see contracts/");
+        Some(Box::new(values.into_iter().chain([file])))
+    }
+}
+
+/// A contract by its name, or from a file.
+fn read(text: &str) -> Result<Named, String> {
+    if let Some((_, contract, _)) = NAMED.iter().find(|(name, ..)| *name == text) {
+        return Ok(Named(*contract));
+    }
+    let path = Path::new(text);
+    if path.extension().is_none() {
+        let names = NAMED.map(|(name, ..)| name).join(", ");
+        return Err(format!("no contract has this name: {names}, or FILE.toml"));
+    }
+    let numbers = std::fs::read_to_string(path).map_err(|error| error.to_string())?;
+    toml::from_str(&numbers)
+        .map(Named)
+        .map_err(|error| error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_files_say_what_the_named_contracts_are() {
+        for (name, contract, _) in NAMED {
+            let file = format!("{}/../contracts/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+            assert_eq!(read(&file).unwrap().0, contract, "{name}");
+            assert_eq!(read(name).unwrap().0, contract);
+        }
+    }
+
+    #[test]
+    fn a_wrong_file_is_refused_with_its_line_and_the_range() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("mine.toml");
+        let numbers = include_str!("../../contracts/worst-case.toml");
+        let wrong = |text: String| {
+            std::fs::write(&file, text).unwrap();
+            read(file.to_str().unwrap()).unwrap_err()
+        };
+        let misspelt = wrong(numbers.replace("reaction", "reacts"));
+        assert!(misspelt.contains("line 2"), "{misspelt}");
+        let outside = wrong(numbers.replace("braking = 3.0 ", "braking = 9.0 "));
+        assert!(
+            outside.contains("ego.braking = 9 is outside (0, 8]"),
+            "{outside}"
+        );
+        assert!(read("worst").unwrap_err().contains("worst-case"));
+    }
+}

@@ -1,0 +1,147 @@
+//! By how much the world is not what the contract says.
+
+/// What differs from the contract, the rest is within it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deviation {
+    /// The others accelerate harder by this factor.
+    pub acceleration: f32,
+    /// A command takes effect later by this factor.
+    pub latency: f32,
+    /// The ego brakes by this factor of what it is commanded.
+    pub braking: f32,
+    /// Time constant in s with which the ego's acceleration follows the command in effect.
+    pub lag: f32,
+    /// Places (m) and speeds (m/s) err by so much more than the contract allows for.
+    pub error: f32,
+    /// Probability that a track is missing in an observation.
+    pub dropout: f64,
+    /// Seconds for which the observation stays what it was, once in an encounter.
+    pub frozen: f32,
+    /// Share of the period by which a call is early or late.
+    pub jitter: f32,
+    /// Probability that a call does not take place: the last command stays.
+    pub missed: f64,
+}
+
+/// A row of the table: what deviates, in words.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// As it is printed.
+    pub name: &'static str,
+    /// In numbers.
+    pub deviation: Deviation,
+}
+
+impl Deviation {
+    /// Everything is as the contract says.
+    pub const NONE: Self = Self {
+        acceleration: 1.0,
+        latency: 1.0,
+        braking: 1.0,
+        lag: 0.0,
+        error: 0.0,
+        dropout: 0.0,
+        frozen: 0.0,
+        jitter: 0.0,
+        missed: 0.0,
+    };
+}
+
+const NONE: Deviation = Deviation::NONE;
+
+/// The rows of the table. The first one is within the contract.
+pub const ROWS: [Row; 17] = [
+    row("within the contract", NONE),
+    row(
+        "others accelerate 1.5 ×",
+        Deviation {
+            acceleration: 1.5,
+            ..NONE
+        },
+    ),
+    row(
+        "others accelerate 2 ×",
+        Deviation {
+            acceleration: 2.0,
+            ..NONE
+        },
+    ),
+    row(
+        "latency 2 ×",
+        Deviation {
+            latency: 2.0,
+            ..NONE
+        },
+    ),
+    row(
+        "latency 3 ×",
+        Deviation {
+            latency: 3.0,
+            ..NONE
+        },
+    ),
+    row(
+        "brakes −10 %",
+        Deviation {
+            braking: 0.9,
+            ..NONE
+        },
+    ),
+    row(
+        "brakes −20 %",
+        Deviation {
+            braking: 0.8,
+            ..NONE
+        },
+    ),
+    row("lag 0.1 s", Deviation { lag: 0.1, ..NONE }),
+    row("lag 0.2 s", Deviation { lag: 0.2, ..NONE }),
+    row("lag 0.3 s", Deviation { lag: 0.3, ..NONE }),
+    row(
+        "sensors err 0.3 m, 0.3 m/s more",
+        Deviation { error: 0.3, ..NONE },
+    ),
+    row(
+        "sensors err 0.6 m, 0.6 m/s more",
+        Deviation { error: 0.6, ..NONE },
+    ),
+    row(
+        "1 % of the tracks missing",
+        Deviation {
+            dropout: 0.01,
+            ..NONE
+        },
+    ),
+    row(
+        "5 % of the tracks missing",
+        Deviation {
+            dropout: 0.05,
+            ..NONE
+        },
+    ),
+    row(
+        "observation frozen for 0.5 s",
+        Deviation {
+            frozen: 0.5,
+            ..NONE
+        },
+    ),
+    row(
+        "calls ± 30 % of the period",
+        Deviation {
+            jitter: 0.3,
+            ..NONE
+        },
+    ),
+    row(
+        "5 % of the calls missed",
+        Deviation {
+            missed: 0.05,
+            ..NONE
+        },
+    ),
+];
+
+const fn row(name: &'static str, deviation: Deviation) -> Row {
+    Row { name, deviation }
+}
