@@ -201,7 +201,7 @@ mutants! {
             false
         }
     }
-    "turns without a grace" in "stop-turns": NoGrace {
+    "turns without a grace" in "humans": NoGrace {
         fn grace(_: &Contract) -> u16 {
             0
         }

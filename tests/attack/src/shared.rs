@@ -26,6 +26,9 @@ const ROUNDING: f64 = 0.02;
 const SAME_WAY: f64 = 0.56;
 const LANE: f64 = 1.0;
 
+/// Who is out of another's way for less than this (m) has not left it.
+const APART: f64 = 3.0;
+
 /// Who comes towards the ego, by more than this angle (cosine), is not behind it.
 const OPPOSITE: f64 = -0.5;
 
@@ -153,13 +156,15 @@ struct Part {
     rows: Vec<Row>,
     /// The station of the last row.
     station: usize,
+    /// What is touched at the station before that.
+    before: Option<[f64; 2]>,
     /// Arc lengths of the ego and of the other at which they point the same way in it.
     same_way: [Option<[f64; 2]>; 2],
 }
 
 /// Adds what is touched at a station to the parts that it hangs together with, or as a new one.
 fn add(parts: &mut Vec<Part>, station: usize, s: f64, touch: Touch) {
-    let touches = |part: &Part| part.station + 1 >= station && part.touches(touch.at);
+    let touches = |part: &Part| part.touches(station, s, touch.at);
     let mut whole = Part {
         rows: vec![Row {
             s,
@@ -167,6 +172,7 @@ fn add(parts: &mut Vec<Part>, station: usize, s: f64, touch: Touch) {
             lead: 0.0,
         }],
         station,
+        before: None,
         same_way: [touch.same_way.map(|_| [s; 2]), touch.same_way],
     };
     while let Some(found) = parts.iter().position(touches) {
@@ -176,12 +182,24 @@ fn add(parts: &mut Vec<Part>, station: usize, s: f64, touch: Touch) {
 }
 
 impl Part {
-    fn touches(&self, [from, to]: [f64; 2]) -> bool {
-        let [first, last] = self.rows[self.rows.len() - 1].touch;
-        from <= last + STEP && first <= to + STEP
+    /// Whether it hangs together with what is touched at a station, `s` (m), the last one or a later one.
+    fn touches(&self, station: usize, s: f64, [from, to]: [f64; 2]) -> bool {
+        let near = |[first, last]: [f64; 2]| from <= last + APART && first <= to + APART;
+        let recent = self.rows[self.rows.len() - 1].s >= s - APART;
+        recent && (near(self.last()) || (self.station == station && self.before.is_some_and(near)))
+    }
+
+    fn last(&self) -> [f64; 2] {
+        self.rows[self.rows.len() - 1].touch
     }
 
     fn absorb(&mut self, other: Self) {
+        let before = if other.station == self.station {
+            other.before
+        } else {
+            Some(other.last())
+        };
+        self.before = hulls(self.before, before);
         for (mine, its) in self.same_way.iter_mut().zip(other.same_way) {
             *mine = hulls(*mine, its);
         }
@@ -404,6 +422,16 @@ mod tests {
     }
 
     #[test]
+    fn a_lane_around_a_corner_is_one_stretch() {
+        let site = site(&[&[[-60.0, 0.0], [0.0, 0.0], [10.0, 12.0], [10.0, 60.0]]]);
+        let [shared] = site.shared(0, 0) else {
+            panic!("one stretch")
+        };
+        let [from, to] = shared.span();
+        assert!(from == 0.0 && to > site.lanes[0].line.length() - 1.0);
+    }
+
+    #[test]
     fn ways_that_cross_or_meet_head_on_share_nothing() {
         let north = [[0.0, -80.0], [0.0, 80.0]];
         let west = [[80.0, 0.5], [-80.0, 0.5]];
@@ -426,7 +454,7 @@ mod tests {
         // The controller's zone begins no later, and not much sooner.
         assert!(zone.ego[0] <= from + 1e-3 && from < zone.ego[0] + 1.0);
         let relation = shared.relation(from, from - 40.0, 0.0).unwrap();
-        assert!(relation.behind && relation.gap >= 40.0 - zone.lead[1] - from + from);
+        assert!(relation.behind && relation.gap >= 40.0 - zone.lead[1]);
         assert!(shared.relation(from - 1.0, 40.0, 0.5).is_none());
     }
 }

@@ -476,7 +476,7 @@ pub const FAMILIES: &[Family] = &[
     Family {
         name: "stop-turns",
         about: "at the very edges of their zones, letting their turns pass, or not quite",
-        ways: |rng| sketch::crossroads(3, Users::Cars, rng),
+        ways: |rng| sketch::across(Users::Cars, rng),
         terms: |rng| {
             let mut terms = Terms::usual(rng).among_equals(rng).with_rule(rng);
             if let Some(rule) = &mut terms.rule {
@@ -487,6 +487,7 @@ pub const FAMILIES: &[Family] = &[
         cast: |_| Cast {
             start: Start::Rest,
             hesitant: true,
+            first_lane: true,
             ..Cast::all(2)
         },
         ..STOP
