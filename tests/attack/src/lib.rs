@@ -1,14 +1,27 @@
 //! An attacker of the safety shield that shares nothing with the simulator.
 //!
-//! It has kinematics, geometry, error models, adversaries and random numbers of its own, in f64. Of the project it knows
-//! the controller alone: its interface, the numbers of a contract, and the zones that a junction states. Every
-//! scenario keeps the contract, so that an overlap, a breach or a fault that is reported, or a decision without a plan after
-//! the first verified one is the shield's fault.
+//! It has kinematics, geometry, error models, adversaries and random numbers of its own, in f64. Every scenario keeps the
+//! contract, so that an overlap, a breach or a fault that is reported, or a decision without a plan after the first
+//! verified one is the shield's fault.
+//!
+//! # What it takes from the controller
+//!
+//! Nothing but its public interface:
+//!
+//! - the numbers of a contract, which are the assumptions;
+//! - what a junction states: the zones and the lines. Adversaries aim at zones; where C7 holds, they stay out of them and
+//!   count arrivals at lines, as the rule says; scenarios end where zones do; a newcomer (U3) is shown before a plan
+//!   needs its zone;
+//! - decisions and plans, which adversaries look at.
+//!
+//! Who touches whom, who is ahead in a lane, by which gap, and what a follower owes (C6) is measured on the attacker's own
+//! polylines and rectangles ([`shared`]).
 //!
 //! | | |
 //! |---|---|
 //! | [`plane`], [`polyline`], [`motion`] | rectangles, ways, pieces of constant acceleration |
 //! | [`actuator`], [`error`], [`sight`], [`sway`] | what the contract allows: latency, errors, gaps, offsets |
+//! | [`shared`] | lanes that are one, and who is in front there |
 //! | [`human`] | adversaries, and what they owe |
 //! | [`sketch`], [`site`], [`audit`] | random ways, the junctions that they make, whether zones cover them |
 //! | [`scenario`], [`world`], [`judge`] | families of scenarios, one scenario, who touches whom |
@@ -66,6 +79,7 @@ pub mod rng;
 pub mod scenario;
 pub mod search;
 pub mod setup;
+pub mod shared;
 pub mod sight;
 pub mod site;
 pub mod sketch;

@@ -1,12 +1,13 @@
 //! Shields with one broken rule each: an attacker that does not catch them proves nothing.
 
 use crate::scenario::{FAMILIES, Family};
-use crate::tally::Tally;
-use cede_controller::dangerous::{Rules, unchecked};
+use crate::tally::{Case, Tally};
+use cede_controller::dangerous::{Rules, Sound, unchecked};
 use cede_controller::shield::margin::{self, Departure};
 use cede_controller::shield::reach::Reach;
 use cede_controller::{Bounds, Contract, Plan, Zone};
 use std::fmt;
+use std::ops::Range;
 
 /// A broken shield.
 #[derive(Clone, Copy, Debug)]
@@ -47,7 +48,7 @@ impl fmt::Display for Caught {
 const CHUNK: u64 = 128;
 
 impl Mutant {
-    /// Whether it is caught within `scenarios` scenarios of a family, and how.
+    /// Whether it is caught within `scenarios` scenarios of a family, and how: in a scenario that the sound shield passes.
     #[must_use]
     pub fn hunt(&self, seed: u64, scenarios: u64) -> Option<Caught> {
         let first = Family::named(self.family).into_iter();
@@ -57,9 +58,13 @@ impl Mutant {
         let mut played = 0;
         for family in first.chain(rest) {
             for from in (seed..seed + scenarios).step_by(CHUNK as usize) {
-                let tally = (self.campaign)(family, from, CHUNK.min(seed + scenarios - from));
+                let to = (from + CHUNK).min(seed + scenarios);
+                let tally = (self.campaign)(family, from, to - from);
                 played += tally.scenarios;
-                if let Some(case) = tally.case {
+                let case = tally
+                    .case
+                    .and_then(|case| self.proper(family, case, from..to));
+                if let Some(case) = case {
                     return Some(Caught {
                         family: family.name,
                         scenarios: played,
@@ -70,6 +75,16 @@ impl Mutant {
             }
         }
         None
+    }
+
+    /// This case, unless the sound shield has it, too; else another one of these scenarios.
+    fn proper(&self, family: &Family, case: Case, seeds: Range<u64>) -> Option<Case> {
+        let sound = |seed: u64| !family.campaign::<Sound>(seed, 1).is_bad();
+        if sound(case.seed) {
+            return Some(case);
+        }
+        let cases = seeds.filter_map(|seed| (self.campaign)(family, seed, 1).case);
+        cases.into_iter().find(|case| sound(case.seed))
     }
 }
 
@@ -121,7 +136,7 @@ mutants! {
             other >= zone.other.from
         }
     }
-    "stale plan" in "all-merge": StalePlan {
+    "stale plan" in "blind": StalePlan {
         fn tail(plan: Plan) -> Plan {
             plan
         }
@@ -146,7 +161,7 @@ mutants! {
             margin::departure(&exact, speed, previous, command)
         }
     }
-    "hazards in the wrong order" in "weaving": WrongOrder {
+    "hazards in the wrong order" in "blind": WrongOrder {
         fn sooner(a: f32, b: f32) -> bool {
             a > b
         }
@@ -176,17 +191,17 @@ mutants! {
             true
         }
     }
-    "plans kept against newcomers" in "newcomers": KeepsAll {
+    "plans kept against newcomers" in "surprise": KeepsAll {
         fn keeps(_: f32) -> bool {
             true
         }
     }
-    "turns without an end" in "stop-rest": Endless {
+    "turns without an end" in "stop-turns": Endless {
         fn ends(_: u16, _: u16, _: u16, _: u16) -> bool {
             false
         }
     }
-    "turns without a grace" in "stop-rest": NoGrace {
+    "turns without a grace" in "humans": NoGrace {
         fn grace(_: &Contract) -> u16 {
             0
         }

@@ -8,6 +8,7 @@ use crate::numbers::Numbers;
 use crate::outcome::Outcome;
 use crate::proposer;
 use crate::rng::Rng;
+use crate::scenario::can_begin;
 use crate::setup::Setup;
 use crate::sight::Sight;
 use crate::site::Leg;
@@ -16,6 +17,9 @@ use cede_controller::{Decision, EnterError, Instant, Observation, Plan, Shield};
 
 /// Others that a shield watches.
 pub const ROOM: usize = 8;
+
+/// One that nobody expects comes into sight at a decision with this probability.
+const SURPRISE: f64 = 0.08;
 
 /// The same call is made twice with this probability.
 const REPEATED: f64 = 0.01;
@@ -30,6 +34,8 @@ pub struct Pilot<'s, R: Rules> {
     sights: Vec<Sight>,
     /// A plan has been verified, in this junction.
     pub verified: bool,
+    /// The guarantee holds: for ever since then, or where the contract is broken, while there is a plan.
+    pub guarded: bool,
     /// A breach or a fault has been reported.
     pub flagged: bool,
     /// What was decided last.
@@ -67,6 +73,7 @@ impl<'s, R: Rules + Clone> Pilot<'s, R> {
             driver,
             sights,
             verified: false,
+            guarded: false,
             flagged: false,
             last: None,
             epoch: rng.bits() >> 20,
@@ -85,6 +92,12 @@ impl<'s, R: Rules + Clone> Pilot<'s, R> {
     #[must_use]
     pub fn number(&self, other: usize) -> u16 {
         self.sights[other].number
+    }
+
+    /// Whether it has ever seen vehicle `other`.
+    #[must_use]
+    pub fn sees(&self, other: usize) -> bool {
+        !self.sights[other].hidden
     }
 
     fn now(&self, tick: u64) -> Instant {
@@ -134,11 +147,14 @@ impl<'s, R: Rules + Clone> Pilot<'s, R> {
         outcome: &mut Outcome,
     ) -> Option<f64> {
         self.enter_next(setup, bodies, tick);
+        if setup.sensing.surprises {
+            self.surprise(setup, numbers, bodies);
+        }
         let proposal = self.driver.propose(numbers, bodies[self.me].state.v);
         let mut look = self.look(setup, bodies)?;
         let now = self.now(tick);
         // Those for whom a plan without them leaves no room have been seen before it was made.
-        while self.sights.iter().any(|sight| sight.hidden) {
+        while !setup.sensing.surprises && self.sights.iter().any(|sight| sight.hidden) {
             let mut unawares = self.shield.clone();
             let decision = unawares.filter(now, &look.observation(), proposal);
             if !self.reveals(setup, numbers, bodies, &decision) {
@@ -156,7 +172,7 @@ impl<'s, R: Rules + Clone> Pilot<'s, R> {
                 outcome.complain(tick, || format!("vehicle {}: once more: {again}", self.me));
             }
         }
-        self.note(tick, &decision, &look, outcome);
+        self.note(setup, tick, &decision, &look, outcome);
         Some(decision.acceleration.into())
     }
 
@@ -187,18 +203,40 @@ impl<'s, R: Rules + Clone> Pilot<'s, R> {
         some
     }
 
-    fn note(&mut self, tick: u64, decision: &Decision, look: &Look, outcome: &mut Outcome) {
+    /// Shows one or the other who was not seen before, unless it is too near behind the ego in its lane.
+    fn surprise(&mut self, setup: &Setup<'s>, numbers: &Numbers, bodies: &[Body]) {
+        let ego = &bodies[self.me];
+        for (sight, body) in self.sights.iter_mut().zip(bodies) {
+            let [me, other] = [ego, body].map(|body| (body.lane, body.state));
+            if sight.hidden
+                && self.rng.chance(SURPRISE)
+                && can_begin(setup.site, numbers, me, other)
+            {
+                sight.hidden = false;
+            }
+        }
+    }
+
+    fn note(
+        &mut self,
+        setup: &Setup<'s>,
+        tick: u64,
+        decision: &Decision,
+        look: &Look,
+        outcome: &mut Outcome,
+    ) {
+        let (sensing, missed) = (&setup.sensing, setup.outside.missed > 0.0);
         outcome.steps += 1;
         let planned = decision.plan.is_some();
         if let Some(breach) = decision.breach {
             outcome.breaches += 1;
             outcome.complain(tick, || format!("vehicle {}: breach {breach:?}", self.me));
         }
-        if let Some(fault) = decision.fault.filter(|_| !look.faulty) {
+        if let Some(fault) = decision.fault.filter(|_| !look.faulty && !missed) {
             outcome.faults += 1;
             outcome.complain(tick, || format!("vehicle {}: fault: {fault}", self.me));
         }
-        if self.verified && !planned {
+        if self.verified && !planned && !sensing.surprises {
             outcome.unplanned += 1;
             outcome.complain(tick, || format!("vehicle {}: no plan: {decision}", self.me));
         }
@@ -206,6 +244,13 @@ impl<'s, R: Rules + Clone> Pilot<'s, R> {
         outcome.unwatched += u64::from(decision.unwatched.is_some());
         self.flagged |= decision.breach.is_some() || decision.fault.is_some() || !planned;
         self.verified |= planned;
+        self.guarded = planned || (self.verified && !sensing.surprises);
+        if let Some(plan) = decision.plan.filter(|plan| plan.go > 0)
+            && self.rng.chance(sensing.blinds)
+        {
+            let more = self.rng.below(20) as u32;
+            self.sights[self.me].blind(u32::from(plan.go) + more);
+        }
         self.last = Some(*decision);
     }
 

@@ -66,6 +66,16 @@ impl Polyline {
             - 1
     }
 
+    /// How far (m) the nearest kink is from `s`.
+    #[must_use]
+    pub fn from_kink(&self, s: f64) -> f64 {
+        let i = self.segment(s);
+        let kink = |at: usize| (1..self.directions.len()).contains(&at);
+        let away = |at: usize| (s - self.arc[at]).abs();
+        let beside = [i, i + 1].into_iter().filter(|&at| kink(at));
+        beside.map(away).fold(f64::INFINITY, f64::min)
+    }
+
     /// The place at arc length `s`, the heading that of the segment; straight on beyond both ends.
     #[must_use]
     pub fn place(&self, s: f64) -> Place {

@@ -22,6 +22,11 @@ pub enum Proposer {
         /// Periods.
         periods: u32,
     },
+    /// Creeps up to where the shield holds it, stays there for so many periods, then goes at full throttle.
+    Hesitates {
+        /// Periods.
+        periods: u32,
+    },
     /// Always the same.
     Always {
         /// The acceleration in m/s².
@@ -54,8 +59,16 @@ pub struct Driver {
     held: f64,
     left: u32,
     calls: u32,
+    /// Calls since it came to rest.
+    rested: u32,
     rng: Rng,
 }
+
+/// Speed of one that creeps in m/s.
+const CREEP: f64 = 0.8;
+
+/// So many calls in a row at a speed below that (m/s) show one at rest.
+const AT_REST: (u32, f64) = (5, 0.05);
 
 impl Driver {
     /// One of this manner.
@@ -66,6 +79,7 @@ impl Driver {
             held: 0.0,
             left: 0,
             calls: 0,
+            rested: 0,
             rng,
         }
     }
@@ -73,6 +87,12 @@ impl Driver {
     /// The next proposal (m/s²) at speed `v`; perhaps not a number.
     pub fn propose(&mut self, numbers: &Numbers, v: f64) -> f32 {
         self.calls += 1;
+        let (calls, slow) = AT_REST;
+        self.rested = if v < slow || self.rested >= calls {
+            self.rested + 1
+        } else {
+            0
+        };
         let (braking, most) = (numbers.ego.braking, numbers.ego.acceleration);
         let wanted = match self.proposer {
             Proposer::Full => most,
@@ -81,6 +101,15 @@ impl Driver {
             Proposer::Speed { wanted } => (wanted - v).clamp(-braking, most),
             Proposer::Waits { periods } if self.calls <= periods => -braking,
             Proposer::Waits { .. } => most,
+            Proposer::Hesitates { periods } => {
+                if self.rested < calls {
+                    CREEP - v
+                } else if self.rested < calls + periods {
+                    -braking
+                } else {
+                    most
+                }
+            }
             Proposer::Always { acceleration } => acceleration,
         };
         wanted as f32

@@ -18,6 +18,8 @@ pub struct Row {
 /// The rows of all families.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
+    /// Seed of the first scenario of each family.
+    pub seed: u64,
     /// One for each family.
     pub rows: Vec<Row>,
     /// How long it took.
@@ -27,12 +29,13 @@ pub struct Report {
 impl Report {
     /// Nothing yet.
     #[must_use]
-    pub fn new(families: &[&Family]) -> Self {
+    pub fn new(seed: u64, families: &[&Family]) -> Self {
         let row = |family: &&Family| Row {
             family: family.name,
             tally: Tally::default(),
         };
         Self {
+            seed,
             rows: families.iter().map(row).collect(),
             seconds: 0.0,
         }
@@ -64,13 +67,23 @@ impl Report {
         self.rows.iter().filter(|row| row.tally.is_bad()).count()
     }
 
-    /// As JSON.
+    /// As JSON: what came of all families together, and the rows.
     ///
     /// # Panics
     /// Never: every number is finite.
     #[must_use]
     pub fn json(&self) -> String {
-        serde_json::to_string_pretty(self).expect("plain numbers and strings")
+        #[derive(Serialize)]
+        struct Summary<'a> {
+            total: Tally,
+            #[serde(flatten)]
+            report: &'a Report,
+        }
+        let summary = Summary {
+            total: self.total(),
+            report: self,
+        };
+        serde_json::to_string_pretty(&summary).expect("plain numbers and strings")
     }
 }
 

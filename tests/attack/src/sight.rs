@@ -17,12 +17,17 @@ pub struct Sensing {
     pub bursts: f64,
     /// Probability at each observation that the ego's own state, or a track's, is not a number for up to 2 s.
     pub faults: f64,
+    /// Probability, at each decision with a plan that goes, that the ego's own state is not a number from then on, for as long
+    /// as the plan goes and up to 2 s more.
+    pub blinds: f64,
     /// Vehicles without a zone with the ego's come and go.
     pub blinking: bool,
     /// Tracks have all the paths that they may be on, until their pose tells.
     pub undecided: bool,
     /// Those who are still too far away to matter are not seen.
     pub newcomers: bool,
+    /// Others come into sight wherever they are: beyond the contract. A plan that is reported after that has to hold.
+    pub surprises: bool,
     /// The observation is frozen for so many periods now and then: outside of the contract.
     pub frozen: u32,
 }
@@ -35,9 +40,11 @@ impl Sensing {
         gaps: 0.0,
         bursts: 0.0,
         faults: 0.0,
+        blinds: 0.0,
         blinking: false,
         undecided: false,
         newcomers: false,
+        surprises: false,
         frozen: 0,
     };
 }
@@ -85,7 +92,7 @@ impl Sight {
             speed: source(),
             missing: 0,
             broken: 0,
-            hidden: sensing.newcomers,
+            hidden: sensing.newcomers || sensing.surprises,
             excluded: Vec::new(),
         }
     }
@@ -116,6 +123,11 @@ impl Sight {
             return Shown::Missing;
         }
         Shown::Seen
+    }
+
+    /// From the next observation on, its state is not a number for so many of them.
+    pub fn blind(&mut self, observations: u32) {
+        self.broken = self.broken.max(observations);
     }
 
     /// The next errors of place and speed, in units of their bounds.

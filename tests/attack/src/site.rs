@@ -4,10 +4,12 @@ use crate::numbers::Numbers;
 use crate::plane::Size;
 use crate::polyline::Polyline;
 use crate::rng::Rng;
+use crate::shared::Shared;
 use crate::sketch::{Kind, Way};
 use cede_controller::{
     Class, Footprint, Junction, JunctionError, PathId, Point, Route, RouteError, Zone,
 };
+use std::sync::OnceLock;
 
 /// Most paths of a junction.
 pub const PATHS: usize = 16;
@@ -69,6 +71,8 @@ pub struct Site {
     pub junctions: Vec<Box<Room>>,
     /// The areas of each lane with each lane.
     areas: Vec<Vec<Area>>,
+    /// The stretches that each lane shares with each lane, found when they are asked for.
+    shared: Vec<OnceLock<Vec<Shared>>>,
     /// Whose vehicles go first in a tie: the lanes in order. None: nobody's.
     pub order: Option<Vec<usize>>,
     /// How far vehicles may be from their lanes.
@@ -118,6 +122,7 @@ impl Site {
             lanes: ways.iter().map(lane).collect(),
             junctions: Vec::new(),
             areas: vec![Vec::new(); ways.len() * ways.len()],
+            shared: vec![OnceLock::new(); ways.len() * ways.len()],
             order,
             tolerance,
         };
@@ -179,6 +184,14 @@ impl Site {
     #[must_use]
     pub fn areas(&self, ego: usize, other: usize) -> &[Area] {
         &self.areas[ego * self.lanes.len() + other]
+    }
+
+    /// The stretches in which lane `ego` and lane `other` are one, by the attacker's own geometry.
+    #[must_use]
+    pub fn shared(&self, ego: usize, other: usize) -> &[Shared] {
+        let lanes = [ego, other].map(|lane| &self.lanes[lane]);
+        self.shared[ego * self.lanes.len() + other]
+            .get_or_init(|| Shared::between(lanes[0], lanes[1], self.tolerance))
     }
 
     /// Whether vehicles of lane `ego` go before those of lane `other` in a tie; none if nobody says so.

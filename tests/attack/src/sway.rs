@@ -51,6 +51,27 @@ impl Sway {
         }
     }
 
+    /// On its lane, in ways in which a vehicle of this `size` may turn: at the kink alone, or by half well before it and after
+    /// it; and with `more`, some in between.
+    #[must_use]
+    pub fn turns(size: Size, more: bool) -> Vec<Self> {
+        let extremes = [(0.02, 1.0), (1.0, 0.0)];
+        let between = [(0.5, 1.0), (0.99, 1.0), (0.99, 0.2)];
+        let ways = extremes.iter().chain(between.iter().filter(|_| more));
+        let way = |&(share, ease): &(f64, f64)| Self {
+            reach: TURNING * size.length * share,
+            ease,
+            ..Self::default()
+        };
+        ways.map(way).collect()
+    }
+
+    /// It turns from so many metres before a kink to as many after it.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        self.reach
+    }
+
     /// Where a vehicle is at arc length `s` of its lane `line`.
     #[must_use]
     pub fn place(&self, line: &Polyline, s: f64) -> Place {

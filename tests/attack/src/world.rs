@@ -304,13 +304,15 @@ impl<'s, R: Rules + Clone> World<'s, R> {
         for &j in &self.driven {
             let (me, ego) = (&self.bodies[i], &self.bodies[j]);
             let areas = site.areas(ego.lane, me.lane);
-            if i == j || ego.gone || areas.is_empty() {
+            let shared = site.shared(ego.lane, me.lane);
+            if i == j || ego.gone || (areas.is_empty() && shared.is_empty()) {
                 continue;
             }
             let meeting = Meeting {
                 ego: ego.state,
                 me: me.state,
                 areas,
+                shared,
                 ego_line: self.lines[j],
                 line: self.lines[i],
                 first: site.goes_first(me.lane, ego.lane),
@@ -325,7 +327,7 @@ impl<'s, R: Rules + Clone> World<'s, R> {
     fn overlaps(&mut self, tick: u64) -> bool {
         for i in 0..self.minds.len() {
             let flagged = match &self.minds[i] {
-                Mind::Shielded(pilot) if pilot.verified => pilot.flagged,
+                Mind::Shielded(pilot) if pilot.guarded => pilot.flagged,
                 Mind::Plain(_) => false,
                 _ => continue,
             };
@@ -333,6 +335,9 @@ impl<'s, R: Rules + Clone> World<'s, R> {
                 continue;
             }
             for j in (0..self.minds.len()).filter(|&j| j != i && !self.bodies[j].gone) {
+                if matches!(&self.minds[i], Mind::Shielded(pilot) if !pilot.sees(j)) {
+                    continue;
+                }
                 let pair = [i, j].map(|k| self.bodies[k].seen(self.setup.site));
                 if self.judge.touch(tick, (i, j), pair) {
                     self.found(i, j, tick, flagged);
@@ -371,6 +376,10 @@ impl<'s, R: Rules + Clone> World<'s, R> {
         let shielded = matches!(self.minds[i], Mind::Shielded(_));
         while shielded && outside.missed > 0.0 && self.rng.chance(outside.missed) {
             clock.due += clock.period;
+            // Nobody promises anything until it is called again.
+            if let Mind::Shielded(pilot) = &mut self.minds[i] {
+                pilot.guarded = false;
+            }
         }
         let away = away(clock.jitter, &mut self.rng);
         clock.next = clock.due.saturating_add_signed(away).max(clock.next + 1);

@@ -10,20 +10,24 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::Instant;
 
-/// Attacks until the shields have decided so many times.
+/// Attacks until the shields have decided so many times, or for so long.
 ///
-/// The result depends on the seed and the number of steps, not on the number of threads.
+/// For a number of steps the result depends on that and the seed, not on the number of threads. The long run is
+/// `cede-attack run --steps 1e9 --json`.
 #[derive(ClapArgs)]
 pub(crate) struct Args {
-    /// Decisions of shields, as in 2e8.
-    #[arg(long, default_value = "1e6", value_parser = count)]
-    steps: u64,
+    /// Decisions of shields, as in 2e8; 1e6 unless --seconds is given.
+    #[arg(long, value_parser = count, conflicts_with = "seconds")]
+    steps: Option<u64>,
+    /// Seconds after which no new round begins.
+    #[arg(long, value_parser = count)]
+    seconds: Option<u64>,
     /// Scenario number i of each family has this seed plus i.
     #[arg(long, default_value_t = 0)]
     seed: u64,
     /// Threads; as many as there are cores, unless it is given.
-    #[arg(long)]
-    threads: Option<usize>,
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
     /// Only this family; may be given more than once.
     #[arg(long = "family", value_parser = family)]
     families: Vec<&'static Family>,
@@ -34,7 +38,7 @@ pub(crate) struct Args {
 
 impl Args {
     pub(crate) fn run(self) -> bool {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads.unwrap_or(0));
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads.unwrap_or(0).into());
         match pool.build() {
             Ok(pool) => pool.install(|| self.attack()),
             Err(error) => {
@@ -51,13 +55,18 @@ impl Args {
         } else {
             &self.families
         };
-        let bar = progress(self.steps);
         let began = Instant::now();
-        let mut report = Report::new(families);
+        let limit = self.seconds.or(self.steps).unwrap_or(1_000_000);
+        let bar = progress(limit, self.seconds.is_some());
+        let mut report = Report::new(self.seed, families);
         let mut round = Round::from(self.seed);
-        while report.steps() < self.steps {
+        let done = |report: &Report| match self.seconds {
+            Some(_) => began.elapsed().as_secs(),
+            None => report.steps(),
+        };
+        while done(&report) < limit {
             report.add(&round.next::<Sound>(families));
-            bar.set_position(report.steps().min(self.steps));
+            bar.set_position(done(&report).min(limit));
             if !bar.is_hidden() {
                 bar.set_message(format!("{} bad", report.bad()));
             }
@@ -73,11 +82,12 @@ impl Args {
     }
 }
 
-fn progress(steps: u64) -> ProgressBar {
+fn progress(limit: u64, seconds: bool) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
-    let style = "{bar:30} {human_pos} of {human_len} steps, {per_sec}, {eta} left, {msg}";
-    let style = ProgressStyle::with_template(style);
-    ProgressBar::new(steps).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+    let unit = if seconds { "s" } else { "steps" };
+    let style = format!("{{bar:30}} {{human_pos}} of {{human_len}} {unit}, {{eta}} left, {{msg}}");
+    let style = ProgressStyle::with_template(&style);
+    ProgressBar::new(limit).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }

@@ -1,7 +1,7 @@
 //! `cede-attack sharp`.
 
 use super::count;
-use cede_attack::mutants;
+use cede_attack::mutants::{self, Mutant};
 use clap::Args as ClapArgs;
 
 /// Shows that the attacker is sharp: shields with one broken rule each are caught.
@@ -10,6 +10,9 @@ pub(crate) struct Args {
     /// Scenarios of each family in which a broken shield has to be caught.
     #[arg(long, default_value = "4096", value_parser = count)]
     scenarios: u64,
+    /// Only rules whose names contain this.
+    #[arg(long, default_value = "")]
+    rule: String,
     /// Seed of the first scenario.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -18,7 +21,8 @@ pub(crate) struct Args {
 impl Args {
     pub(crate) fn run(self) -> bool {
         let mut sharp = true;
-        for mutant in mutants::ALL {
+        let chosen = |mutant: &&Mutant| mutant.name.contains(&self.rule);
+        for mutant in mutants::ALL.iter().filter(chosen) {
             let caught = mutant.hunt(self.seed, self.scenarios);
             match &caught {
                 Some(caught) => println!("{:28} {caught}", mutant.name),

@@ -1,20 +1,76 @@
 //! What the contract expects of others: C6 in lanes and C7 where a rule of precedence holds.
+//!
+//! Who is behind whom in a lane, and by which gap, is measured where the vehicles are ([`Shared`]). C7 is about the
+//! zones of the junction: there the controller's zones and lines are what everybody keeps to.
 
 use crate::motion::{State, TICK};
 use crate::numbers::{Numbers, Rule};
+use crate::shared::{EARLY, Shared};
 use crate::site::Area;
 
 /// What one human owes one shielded vehicle, and what it remembers for that.
 #[derive(Clone, Debug, Default)]
 pub struct Duty {
-    /// For how long the ego has been ahead in each lane with less than the safe gap, in s.
-    unsafe_for: Vec<f64>,
+    /// In each lane: what is owed to an ego that is ahead.
+    distances: Vec<Distance>,
     /// When the ego arrived at its line at the earliest, in s.
     ego_arrived: Option<f64>,
     /// When the human arrived at its own at the latest, in s.
     arrived: Option<f64>,
     /// Both were seen at rest: the ego may have the turn.
     waited: bool,
+}
+
+/// What one owes an ego that is ahead in one lane.
+#[derive(Clone, Copy, Debug, Default)]
+struct Distance {
+    /// The ego has had the safe gap since it came to be ahead: one who cuts in has no claim to be spared.
+    owed: bool,
+    /// For how long the gap has been less than that, in s.
+    unsafe_for: f64,
+    /// Ticks in which nothing can change.
+    calm: u32,
+}
+
+/// So many ticks are looked ahead, in which no two vehicles come nearer than this (m).
+const CALM: u32 = 10;
+const NEARER: f64 = 3.0;
+
+impl Distance {
+    /// Whether `me` has to brake in the tick that begins, in which it wants to accelerate by `wanted`.
+    fn must_brake(
+        &mut self,
+        numbers: &Numbers,
+        (ego, me): (State, State),
+        shared: &Shared,
+        wanted: f64,
+    ) -> bool {
+        let relation = shared.relation(ego.s, me.s, EARLY + NEARER);
+        let behind = relation.filter(|relation| relation.behind);
+        let entered = ego.s >= shared.span()[0] - EARLY;
+        let Some(relation) = behind.filter(|_| entered) else {
+            *self = Self {
+                calm: if behind.is_none() { CALM } else { 0 },
+                ..Self::default()
+            };
+            return false;
+        };
+        self.owed |= relation.gap >= numbers.safe_gap(me.v, ego.v);
+        // One tick early, because a tick is the shortest time in which it can react.
+        let next = me.after(wanted, TICK, numbers.other.speed);
+        let needs = numbers.safe_gap(next.v, ego.v) + next.s - me.s;
+        if self.owed && relation.gap <= needs {
+            self.unsafe_for += TICK;
+        } else {
+            self.unsafe_for = 0.0;
+            self.calm = if relation.gap > needs + NEARER {
+                CALM
+            } else {
+                0
+            };
+        }
+        self.unsafe_for > numbers.reaction - TICK
+    }
 }
 
 /// Who meets whom, from the human's side.
@@ -26,6 +82,8 @@ pub struct Meeting<'a> {
     pub me: State,
     /// Their zones.
     pub areas: &'a [Area],
+    /// Where they are in one lane.
+    pub shared: &'a [Shared],
     /// Where the ego waits.
     pub ego_line: f64,
     /// Where the human waits.
@@ -56,23 +114,13 @@ impl Duty {
 
     /// C6: it stops behind an ego that is ahead in its lane. A gap that is not safe is reacted to after the reaction time.
     fn keep_distance(&mut self, numbers: &Numbers, meeting: &Meeting<'_>, wanted: f64) -> f64 {
-        let (ego, me) = (meeting.ego, meeting.me);
-        self.unsafe_for.resize(meeting.areas.len(), 0.0);
+        self.distances
+            .resize(meeting.shared.len(), Distance::default());
         let mut limit = wanted;
-        for (area, unsafe_for) in meeting.areas.iter().zip(&mut self.unsafe_for) {
-            let inside = ego.s >= area.ego[0] && ego.s < area.ego[1] && me.s < area.other[1];
-            let lead = ego.s - me.s;
-            let ahead = area.lane && inside && lead >= 0.5 * (area.lead[0] + area.lead[1]);
-            let gap = lead - area.lead[1];
-            // One tick early, because a tick is the shortest time in which it can react.
-            let next = me.after(wanted, TICK, numbers.other.speed);
-            let needs = numbers.safe_gap(next.v, ego.v) + next.s - me.s;
-            if ahead && gap <= needs {
-                *unsafe_for += TICK;
-            } else {
-                *unsafe_for = 0.0;
-            }
-            if *unsafe_for > numbers.reaction - TICK {
+        for (shared, distance) in meeting.shared.iter().zip(&mut self.distances) {
+            if distance.calm > 0 {
+                distance.calm -= 1;
+            } else if distance.must_brake(numbers, (meeting.ego, meeting.me), shared, wanted) {
                 limit = limit.min(-numbers.follower_braking);
             }
         }

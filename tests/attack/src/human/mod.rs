@@ -33,6 +33,10 @@ pub enum Manner {
     Coast,
     /// Stays where it is.
     Stand,
+    /// Full acceleration and full braking to a stand, each for seconds, as in a queue.
+    StopAndGo,
+    /// Stays where it is for so many choices, then aims at the ego.
+    Leaves(u32),
     /// These accelerations, each for half a second.
     Profile(Vec<f64>),
 }
@@ -57,6 +61,26 @@ impl Manner {
             &Self::Coast,
         ])
         .clone()
+    }
+
+    /// One that stands in a queue, or is about to spoil it.
+    #[must_use]
+    pub fn queueing(rng: &mut Rng) -> Self {
+        match rng.below(4) {
+            0 | 1 => Self::StopAndGo,
+            2 => Self::BrakeCheck,
+            _ => Self::random(rng),
+        }
+    }
+
+    /// One that stands in the way, and leaves after up to 15 s.
+    #[must_use]
+    pub fn leaving(rng: &mut Rng) -> Self {
+        match rng.below(5) {
+            0 => Self::StopAndGo,
+            1 => Self::Stand,
+            _ => Self::Leaves(rng.below(150) as u32),
+        }
     }
 
     /// One that does not aim at anybody.
@@ -130,7 +154,9 @@ impl Human {
             (Manner::Stand, _) => -braking,
             (Manner::Coast, _) => 0.0,
             (Manner::Random, _) => self.random(),
-            (Manner::Bang, _) => self.bang(),
+            (Manner::Bang, _) => self.bang(15),
+            (Manner::StopAndGo, _) => self.bang(40),
+            (&Manner::Leaves(choices), _) if self.choices <= choices => -braking,
             (Manner::Profile(profile), _) => {
                 let at = (self.choices as usize - 1) / 5;
                 profile[at.min(profile.len() - 1)]
@@ -138,7 +164,9 @@ impl Human {
             (Manner::Creep, _) if me.v > 0.6 => -0.5 * braking,
             (Manner::Creep, _) => 0.5 * acceleration,
             (Manner::Rush, _) | (_, None) => acceleration,
-            (Manner::Aim, Some((prey, area))) => aim::aim(numbers, &self.means, me, prey, area),
+            (Manner::Aim | Manner::Leaves(_), Some((prey, area))) => {
+                aim::aim(numbers, &self.means, me, prey, area)
+            }
             (Manner::Lurk, Some((prey, area))) => aim::lurk(numbers, &self.means, me, prey, area),
             (Manner::Block, Some((_, area))) => self.block(me, area),
             (Manner::BrakeCheck, Some((prey, _))) => self.brake_check(me, prey),
@@ -173,9 +201,9 @@ impl Human {
         )
     }
 
-    fn bang(&mut self) -> f64 {
+    fn bang(&mut self, longest: usize) -> f64 {
         let (down, up) = (-self.means.braking, self.means.acceleration);
-        self.hold(|_, last| if last > 0.0 { down } else { up }, 15)
+        self.hold(|_, last| if last > 0.0 { down } else { up }, longest)
     }
 
     fn block(&mut self, me: State, area: Area) -> f64 {

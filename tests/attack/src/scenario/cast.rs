@@ -8,7 +8,8 @@ use crate::plane::separation;
 use crate::proposer::Proposer;
 use crate::rng::Rng;
 use crate::setup::{Car, Driver};
-use crate::site::{Area, Site};
+use crate::shared::{EARLY, Shared};
+use crate::site::Site;
 use crate::sway::Sway;
 
 /// How a scenario's vehicles begin.
@@ -22,6 +23,10 @@ pub enum Start {
     Far,
     /// One behind the other in the first lane.
     Queue,
+    /// Bumper to bumper in the first lane and in one across, most at rest.
+    Platoon,
+    /// The others at rest in the junction and around it, shielded vehicles on the way to it.
+    Jam,
 }
 
 /// What humans are like.
@@ -33,6 +38,10 @@ pub enum Manners {
     Gentle,
     /// They accelerate as a search says.
     Searched,
+    /// They stop and go.
+    Queueing,
+    /// They stand, and leave one after the other.
+    Leaving,
 }
 
 /// Who takes part.
@@ -50,6 +59,8 @@ pub struct Cast {
     pub manners: Manners,
     /// Shielded vehicles are those of the first lane.
     pub first_lane: bool,
+    /// Shielded vehicles let their turns pass.
+    pub hesitant: bool,
 }
 
 /// How often a place for a vehicle is looked for.
@@ -66,6 +77,7 @@ impl Cast {
             late: 0.0,
             manners: Manners::Hostile,
             first_lane: false,
+            hesitant: false,
         }
     }
 
@@ -97,21 +109,27 @@ impl Cast {
         (cars.len() >= 2).then_some(cars)
     }
 
+    fn lane(&self, number: usize, site: &Site, rng: &mut Rng) -> usize {
+        if self.first_lane && number == 0 {
+            return 0;
+        }
+        match self.start {
+            Start::Queue if rng.chance(0.75) => 0,
+            Start::Platoon if rng.chance(0.6) => 0,
+            Start::Platoon if rng.chance(0.7) => 1,
+            _ => rng.below(site.lanes.len()),
+        }
+    }
+
     fn car(&self, number: usize, site: &Site, numbers: &Numbers, rng: &mut Rng) -> Car {
         let shielded = number < self.shielded;
-        let lane = if (self.first_lane && number == 0)
-            || (self.start == Start::Queue && rng.chance(0.75))
-        {
-            0
-        } else {
-            rng.below(site.lanes.len())
-        };
+        let lane = self.lane(number, site, rng);
         let fastest = if shielded {
             numbers.ego.speed
         } else {
             numbers.other.speed
         };
-        let start = self.state(site, lane, fastest, rng);
+        let start = self.state(site, (lane, shielded), fastest, rng);
         let driver = if shielded {
             self.shielded(numbers, rng)
         } else {
@@ -139,7 +157,13 @@ impl Cast {
         }
     }
 
-    fn state(&self, site: &Site, lane: usize, fastest: f64, rng: &mut Rng) -> State {
+    fn state(
+        &self,
+        site: &Site,
+        (lane, shielded): (usize, bool),
+        fastest: f64,
+        rng: &mut Rng,
+    ) -> State {
         let length = site.lanes[lane].line.length();
         let line = site.line(lane).min(0.7 * length);
         let rests = rng.chance(0.15);
@@ -147,6 +171,17 @@ impl Cast {
             Start::Moving => (rng.within(-50.0, 10.0), rng.within(0.0, fastest)),
             Start::Far => (rng.within(-70.0, -14.0), rng.within(0.0, fastest)),
             Start::Queue => (rng.within(-60.0, 30.0), rng.within(0.0, fastest)),
+            Start::Platoon => {
+                let slot = rng.below(12) as f64 - 8.0;
+                let apart = site.lanes[lane].size.length + rng.within(0.7, 3.0);
+                let slow = rng.within(0.0, 0.3 * fastest);
+                (slot * apart, rng.pick(&[0.0, 0.0, slow]))
+            }
+            Start::Jam if shielded => (rng.within(-60.0, -5.0), rng.within(0.0, fastest)),
+            Start::Jam => {
+                let slow = rng.within(0.0, 2.0);
+                (rng.within(-18.0, 25.0), rng.pick(&[0.0, 0.0, 0.0, slow]))
+            }
             Start::Rest => {
                 let near = rng.chance(0.7);
                 let v = if near {
@@ -178,7 +213,13 @@ impl Cast {
             Manner::Stand
         };
         let from = 1 + rng.below(1200) as u64;
-        let mut proposer = Proposer::random(rng);
+        let mut proposer = if self.hesitant {
+            let any = rng.below(40) as u32;
+            let periods = rng.pick(&[0, any, any]);
+            Proposer::Hesitates { periods }
+        } else {
+            Proposer::random(rng)
+        };
         if let Proposer::Speed { wanted } = &mut proposer {
             *wanted = wanted.min(numbers.ego.speed);
         }
@@ -193,6 +234,8 @@ impl Cast {
         match self.manners {
             Manners::Hostile => Manner::random(rng),
             Manners::Gentle => Manner::gentle(rng),
+            Manners::Queueing => Manner::queueing(rng),
+            Manners::Leaving => Manner::leaving(rng),
             Manners::Searched => Manner::Profile(vec![0.0; 24]),
         }
     }
@@ -218,24 +261,29 @@ pub fn can_begin(
     let place = |(lane, state): (usize, State)| site.lanes[lane].line.place(state.s);
     let size = |(lane, _): (usize, State)| site.lanes[lane].size;
     let gap = separation(place(ego), size(ego), place(other), size(other));
-    let areas = site.areas(ego.0, other.0);
-    let keeps = areas
+    let shared = site.shared(ego.0, other.0);
+    let keeps = shared
         .iter()
-        .all(|area| has_gap(numbers, area, ego.1, other.1));
+        .all(|shared| has_gap(numbers, shared, ego.1, other.1));
     gap > 0.5 + 2.0 * site.tolerance && keeps
 }
 
 /// Whether `other` is not behind `ego` in a lane, as far as sensors tell, or can stop there.
-fn has_gap(numbers: &Numbers, area: &Area, ego: State, other: State) -> bool {
+#[must_use]
+pub(super) fn has_gap(numbers: &Numbers, shared: &Shared, ego: State, other: State) -> bool {
     let error = 2.0 * numbers.position_error + 0.1;
     // Until the first decision both move on.
     let soon = numbers.period + 2.0 * numbers.jitter;
-    let entered = ego.s + error + (ego.v + soon) * soon >= area.ego[0] && other.s <= area.other[1];
-    let lead = ego.s - other.s;
-    let ahead = area.lane && entered && lead + 2.0 * error + ego.v * soon >= area.lead[0];
+    let early = EARLY + error + (ego.v + soon) * soon;
+    let relation = shared.relation(ego.s, other.s, early);
+    // One beside the ego may be taken for one behind it.
+    let beyond = 2.0 * error + ego.v * soon;
+    let Some(relation) = relation.filter(|relation| relation.front <= beyond) else {
+        return true;
+    };
     let error_v = 2.0 * numbers.speed_error;
     let faster = other.v + error_v + numbers.other.acceleration * soon;
     let slower = (ego.v - error_v - numbers.ego.braking * soon).max(0.0);
     let nearer = 2.0 * error + (faster - slower).max(0.0) * soon;
-    !ahead || lead - area.lead[1] >= numbers.safe_gap(faster, slower) + nearer
+    relation.gap >= numbers.safe_gap(faster, slower) + nearer
 }

@@ -21,6 +21,8 @@ pub struct Family {
     pub cast: fn(&mut Rng) -> Cast,
     /// What is seen.
     pub sensing: fn(&mut Rng) -> Sensing,
+    /// Probability that a call is missed: beyond the contract.
+    pub missed: f64,
     /// Sites mostly have an order of rights of way.
     pub ordered: bool,
     /// How long a scenario lasts at most, in s.
@@ -39,6 +41,7 @@ const ONE: Family = Family {
     terms: |rng| Terms::usual(rng).perhaps_blurred(rng),
     cast: |rng| Cast::one(1 + rng.below(8)),
     sensing: |_| Sensing::PLAIN,
+    missed: 0.0,
     ordered: false,
     seconds: 18.0,
     sites: 10,
@@ -376,6 +379,118 @@ pub const FAMILIES: &[Family] = &[
         },
         cast: |rng| Cast::one(1 + rng.below(7)),
         ..ONE
+    },
+    Family {
+        name: "queue",
+        about: "bumper to bumper in the ego's lane and in one across, stopping and going",
+        ways: |rng| match rng.below(3) {
+            0 => sketch::merge(3, Users::Mixed, rng),
+            1 => sketch::crossroads(4, Users::Mixed, rng),
+            _ => sketch::lanes(3, Users::Mixed, rng),
+        },
+        cast: |rng| Cast {
+            start: Start::Platoon,
+            manners: Manners::Queueing,
+            first_lane: true,
+            ..Cast::one(3 + rng.below(8))
+        },
+        seconds: 30.0,
+        sites: 6,
+        ..ONE
+    },
+    Family {
+        name: "jam",
+        about: "10 to 20 others at rest in the junction and around it, who leave one after the other",
+        ways: |rng| sketch::star(10, Users::Mixed, rng),
+        cast: |rng| Cast {
+            start: Start::Jam,
+            manners: Manners::Leaving,
+            ..Cast::one(10 + rng.below(11))
+        },
+        seconds: 40.0,
+        sites: 4,
+        ..ONE
+    },
+    Family {
+        name: "turns",
+        about: "one lane before a kink of up to a right angle and after it, and lorries in arcs",
+        ways: |rng| sketch::turns(5, rng.pick(&[Users::Lorries, Users::Mixed]), rng),
+        cast: |rng| Cast {
+            start: rng.pick(&[Start::Moving, Start::Queue, Start::Platoon]),
+            ..Cast::one(1 + rng.below(6))
+        },
+        ..ONE
+    },
+    Family {
+        name: "zipper",
+        about: "lanes side by side that become one",
+        ways: |rng| sketch::zipper(4, Users::Mixed, rng),
+        cast: |rng| Cast {
+            start: rng.pick(&[Start::Moving, Start::Far, Start::Platoon]),
+            ..Cast::one(1 + rng.below(6))
+        },
+        ..ONE
+    },
+    Family {
+        name: "all-queue",
+        about: "every vehicle has the shield, bumper to bumper, into one exit or around corners",
+        ways: |rng| match rng.below(3) {
+            0 => sketch::zipper(3, Users::Mixed, rng),
+            1 => sketch::turns(3, Users::Mixed, rng),
+            _ => sketch::merge(3, Users::Mixed, rng),
+        },
+        cast: |rng| Cast {
+            start: Start::Platoon,
+            first_lane: true,
+            ..Cast::all(3 + rng.below(4))
+        },
+        ..ALL
+    },
+    Family {
+        name: "blind",
+        about: "the ego's own state is not a number from when it goes for a gap until after the plan",
+        ways: |rng| match rng.below(3) {
+            0 => sketch::weaving(4, Users::Cars, rng),
+            1 => sketch::star(6, Users::Cars, rng),
+            _ => sketch::crossroads(6, Users::Cars, rng),
+        },
+        sensing: |rng| Sensing {
+            blinds: rng.pick(&[0.02, 0.1, 0.3]),
+            ..Sensing::PLAIN
+        },
+        cast: |rng| Cast::one(2 + rng.below(6)),
+        ..ONE
+    },
+    Family {
+        name: "surprise",
+        about: "others come into sight anywhere, calls are missed: a plan that is reported holds all the same",
+        ways: |rng| sketch::star(5, Users::Mixed, rng),
+        sensing: |_| Sensing {
+            surprises: true,
+            ..Sensing::PLAIN
+        },
+        missed: 0.02,
+        cast: |rng| Cast::one(2 + rng.below(6)),
+        ..ONE
+    },
+    Family {
+        name: "stop-turns",
+        about: "at the very edges of their zones, letting their turns pass, or not quite",
+        ways: |rng| sketch::across(Users::Cars, rng),
+        terms: |rng| {
+            let mut terms = Terms::usual(rng).among_equals(rng).with_rule(rng);
+            if let Some(rule) = &mut terms.rule {
+                rule.patience = rng.pick(&[5, 5, 8]);
+            }
+            terms
+        },
+        cast: |_| Cast {
+            start: Start::Rest,
+            hesitant: true,
+            first_lane: true,
+            ..Cast::all(2)
+        },
+        ..STOP
     },
     Family {
         name: "search",

@@ -62,7 +62,10 @@ impl Family {
             cars,
             ticks: (self.seconds / crate::motion::TICK) as u64,
             sensing: (self.sensing)(rng),
-            outside: Outside::NOT,
+            outside: Outside {
+                missed: self.missed,
+                ..Outside::NOT
+            },
             seed: rng.bits(),
         })
     }

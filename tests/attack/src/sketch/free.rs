@@ -37,6 +37,15 @@ pub fn curves(count: usize, users: Users, rng: &mut Rng) -> Vec<Way> {
     (0..count).map(way).collect()
 }
 
+/// Two straight ways across each other.
+#[must_use]
+pub fn across(users: Users, rng: &mut Rng) -> Vec<Way> {
+    let base = rng.within(0.0, TAU);
+    let angles = [base, base + rng.sign() * rng.within(0.9, 2.2)];
+    let way = |(entry, &angle): (usize, &f64)| bent([0.0; 2], angle, 0.0, entry, users, rng);
+    angles.iter().enumerate().map(way).collect()
+}
+
 /// Ways in nearly the same direction, or nearly the opposite one, that touch over a long way.
 #[must_use]
 pub fn near_parallel(count: usize, users: Users, rng: &mut Rng) -> Vec<Way> {

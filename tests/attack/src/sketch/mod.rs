@@ -5,11 +5,15 @@ mod corners;
 mod free;
 mod pen;
 mod row;
+mod turns;
+mod zipper;
 
 pub use arms::{crossroads, merge, star};
 pub use corners::corners;
-pub use free::{curves, lanes, near_parallel, weaving, winding, with_bystanders};
+pub use free::{across, curves, lanes, near_parallel, weaving, winding, with_bystanders};
 pub use row::row;
+pub use turns::turns;
+pub use zipper::zipper;
 
 use crate::plane::Size;
 use crate::rng::Rng;
