@@ -9,7 +9,7 @@ use crate::proposer::Proposer;
 use crate::rng::Rng;
 use crate::setup::{Car, Driver};
 use crate::shared::{EARLY, Shared};
-use crate::site::Site;
+use crate::site::{Area, Site};
 use crate::sway::Sway;
 
 /// How a scenario's vehicles begin.
@@ -265,7 +265,26 @@ pub fn can_begin(
     let keeps = shared
         .iter()
         .all(|shared| has_gap(numbers, shared, ego.1, other.1));
-    gap > 0.5 + 2.0 * site.tolerance && keeps
+    let promised = site
+        .areas(ego.0, other.0)
+        .iter()
+        .all(|area| is_promised(numbers, area, ego.1, other.1));
+    gap > 0.5 + 2.0 * site.tolerance && keeps && promised
+}
+
+/// Whether `other` has the gap that the manual's U5 demands of it: behind `ego` in what the junction calls a lane, be it a
+/// crossing at a small angle in which no two drivers would see one.
+fn is_promised(numbers: &Numbers, area: &Area, ego: State, other: State) -> bool {
+    let error = 2.0 * numbers.position_error + 0.1;
+    let lead = ego.s - other.s;
+    let inside = ego.s + error >= area.ego[0] && ego.s - error <= area.ego[1];
+    let ahead = lead + 2.0 * error >= 0.5 * (area.lead[0] + area.lead[1]);
+    if !(area.lane && inside && ahead && other.s - error <= area.other[1]) {
+        return true;
+    }
+    let faster = other.v + 2.0 * numbers.speed_error;
+    let slower = (ego.v - 2.0 * numbers.speed_error).max(0.0);
+    lead - 2.0 * error - area.lead[1] >= numbers.safe_gap(faster, slower)
 }
 
 /// Whether `other` is not behind `ego` in a lane, as far as sensors tell, or can stop there.
