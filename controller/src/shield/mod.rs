@@ -555,12 +555,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
     }
 
     /// Voids the remembered plan unless it is safe against whoever it was not verified against, or against `all`.
-    fn verify_again(
-        &mut self,
-        scene: &Scene<'_>,
-        now: Instant,
-        all: bool,
-    ) {
+    fn verify_again(&mut self, scene: &Scene<'_>, now: Instant, all: bool) {
         let Some(plan) = self.memory.plan() else {
             return;
         };

@@ -222,7 +222,12 @@ impl<const N: usize> Tracks<N> {
             // It coasts.
             (Some(_), Err(fault)) => findings.fault = findings.fault.or(Some(fault)),
             // Two of one number for whom there is no room.
-            (None, _) if self.unwatched.placed(number, path).is_some_and(|it| it.seen) => {
+            (None, _)
+                if self
+                    .unwatched
+                    .placed(number, path)
+                    .is_some_and(|it| it.seen) =>
+            {
                 findings.fault = findings.fault.or(Some(door::twice(number)));
                 self.close_unplaced(way, ego, (track, path));
             }
@@ -240,6 +245,12 @@ impl<const N: usize> Tracks<N> {
                     self.add::<R>((contract, way), ego, other);
                 } else {
                     self.unwatched.open(number, path);
+                    let meets = way.conflict(path).is_some_and(|it| it.zones().count() > 0);
+                    if meets && !self.watched.is_full() {
+                        // Known, so that it is nobody new when its state is refused.
+                        (other.gone, other.news) = (true, News::None);
+                        let _ = self.watched.push(other);
+                    }
                 }
             }
             // Nobody knows where it is: its zones may be occupied. One that was seen before is missing.

@@ -46,7 +46,10 @@ fn one_that_takes_the_room_of_another_newcomer_is_no_longer_unwatched() {
     assert_eq!(decision.unwatched, None);
     let mut run = Run::<Sound, 1>::with_rules(&site, WORST);
     run.observe(own, &[old(62.0)], 0.0);
-    assert_eq!(run.observe(own, &[old(63.0), x(1.0)], 0.0).unwatched, Some(1));
+    assert_eq!(
+        run.observe(own, &[old(63.0), x(1.0)], 0.0).unwatched,
+        Some(1)
+    );
     // The old one leaves; the new one comes first, and X, whose zone comes sooner, gets its place.
     let decision = run.observe(own, &[old(64.0), new, x(1.0)], 0.0);
     assert_eq!(decision.unwatched, Some(9));
@@ -63,11 +66,7 @@ fn a_refused_state_of_one_without_room_voids_nothing() {
         run.decide(FIRST, &[(1, [10.0, 5.0])], 3.0);
         let decision = run.decide(NEXT, &[(1, [10.5, 5.0]), (2, [0.0, 5.0])], f32::NAN);
         assert!(decision.plan.is_some());
-        let decision = run.decide(
-            THEN,
-            &[(1, [11.0, 5.0]), (2, [0.5, f32::NAN])],
-            f32::NAN,
-        );
+        let decision = run.decide(THEN, &[(1, [11.0, 5.0]), (2, [0.5, f32::NAN])], f32::NAN);
         assert!(decision.fault.is_some());
         decision.plan.is_some()
     }
@@ -84,12 +83,14 @@ fn one_without_room_that_has_just_left_closes_nothing_when_it_goes() {
     let own = [20.0, 0.0];
     let end = zone(&site, 3).other.to;
     assert_eq!(
-        run.decide(own, &[first, (3, [end - 0.4, 10.0])], 0.0).unwatched,
+        run.decide(own, &[first, (3, [end - 0.4, 10.0])], 0.0)
+            .unwatched,
         Some(3)
     );
     // It is past its zone, and may seem not to be in the next observation.
     assert_eq!(
-        run.decide(own, &[first, (3, [end + 0.6, 10.0])], 0.0).unwatched,
+        run.decide(own, &[first, (3, [end + 0.6, 10.0])], 0.0)
+            .unwatched,
         None
     );
     // It is out of sight.
@@ -125,11 +126,7 @@ fn one_without_room_that_breaks_the_contract_is_judged_afresh() {
         run.decide(FIRST, &[(1, [10.0, 5.0])], 3.0);
         let decision = run.decide(NEXT, &[(1, [10.5, 5.0]), (2, [0.0, 5.0])], f32::NAN);
         assert!(decision.plan.is_some());
-        let decision = run.decide(
-            THEN,
-            &[(1, [11.0, 5.0]), (2, [54.0, 8.0])],
-            f32::NAN,
-        );
+        let decision = run.decide(THEN, &[(1, [11.0, 5.0]), (2, [54.0, 8.0])], f32::NAN);
         (decision.breach, decision.plan.is_some())
     }
     assert_eq!(next::<8>(&site), (Some(Breach::Other(2)), false));
@@ -175,7 +172,10 @@ fn two_of_one_number_without_room_are_both_feared() {
 fn the_end_of_time_is_a_time() {
     let site = crossing();
     let mut shield = Shield::<8>::enter(WORST, &site, EGO).unwrap();
-    let seen = Observation { ego: ego(&site, [20.0, 0.0]), tracks: &[] };
+    let seen = Observation {
+        ego: ego(&site, [20.0, 0.0]),
+        tracks: &[],
+    };
     shield.filter(Instant::from_micros(0), &seen, 0.0);
     shield.filter(Instant::from_micros(u64::MAX), &seen, 0.0);
 }
@@ -210,7 +210,10 @@ struct Dice(u64);
 
 impl Dice {
     fn unit(&mut self) -> f32 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 40) as f32 / (1_u32 << 24) as f32
     }
 
@@ -233,10 +236,18 @@ fn drive([s, v]: [f64; 2], a: f64, time: f64, cap: f64) -> [f64; 2] {
 /// allows: the ego is never in a zone together with one of them, and its plan is never void.
 fn crowd<const N: usize>(seed: u64, faults: bool) -> Result<bool, std::string::String> {
     let site = crowded();
-    let contract = WORST.to_builder().position_error(0.3).speed_error(0.2).build().unwrap();
+    let contract = WORST
+        .to_builder()
+        .position_error(0.3)
+        .speed_error(0.2)
+        .build()
+        .unwrap();
     let mut run = Run::<Sound, N>::with_rules(&site, contract);
     let mut dice = Dice(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) + 1);
-    let mut own = [f64::from(dice.within(20.0, 56.0)), f64::from(dice.within(0.0, 12.0))];
+    let mut own = [
+        f64::from(dice.within(20.0, 56.0)),
+        f64::from(dice.within(0.0, 12.0)),
+    ];
     let mut others: std::vec::Vec<(u16, u8, [f64; 2], f32)> = (0..5_u16)
         .map(|i| {
             let path = 1 + (dice.unit() * 3.0) as u8;
@@ -268,19 +279,29 @@ fn crowd<const N: usize>(seed: u64, faults: bool) -> Result<bool, std::string::S
             }
         }
         let sensed = noisy(&mut dice, own);
-        let proposal = if dice.unit() < 0.7 { 3.0 } else { dice.within(-3.0, 3.0) };
+        let proposal = if dice.unit() < 0.7 {
+            3.0
+        } else {
+            dice.within(-3.0, 3.0)
+        };
         let decision = run.observe(ego(&site, sensed), &tracks, proposal);
         if let Some(breach) = decision.breach {
             return Err(std::format!("{seed} {frame}: {breach:?}"));
         }
         if planned && decision.plan.is_none() {
-            return Err(std::format!("{seed} {frame}: {decision} {own:?} {others:?}"));
+            return Err(std::format!(
+                "{seed} {frame}: {decision} {own:?} {others:?}"
+            ));
         }
         planned |= decision.plan.is_some();
         let late = f64::from(dice.within(0.0, 0.1));
         for (_, _, state, a) in &mut others {
             if dice.unit() < 0.2 {
-                *a = if dice.unit() < 0.2 { -8.0 } else { dice.within(-3.0, 3.0) };
+                *a = if dice.unit() < 0.2 {
+                    -8.0
+                } else {
+                    dice.within(-3.0, 3.0)
+                };
             }
             *state = drive(*state, f64::from(*a), 0.1, 15.0);
         }
@@ -289,7 +310,9 @@ fn crowd<const N: usize>(seed: u64, faults: bool) -> Result<bool, std::string::S
         before = decision.acceleration;
         for &(number, path, [t, _], _) in &others {
             let zone = zone(&site, path);
-            let inside = |span: Span, x: f64| f64::from(span.from) + 0.02 < x && x + 0.02 < f64::from(span.to);
+            let inside = |span: Span, x: f64| {
+                f64::from(span.from) + 0.02 < x && x + 0.02 < f64::from(span.to)
+            };
             if planned && inside(zone.ego, own[0]) && inside(zone.other, t) {
                 return Err(std::format!("{seed} {frame}: together with {number}"));
             }
@@ -335,37 +358,55 @@ fn nor_if_there_is_room() {
 /// A newcomer at rest 55 m before its zone appears while the ego, which is in it, carries out a plan that leaves it in a
 /// second and rests behind a leader.
 #[test]
+#[ignore = "open: a plan is not credited with a zone that it leaves while it brakes"]
 fn a_newcomer_that_cannot_reach_its_zone_in_time_voids_no_plan() {
-    let site = site(&[east(), route(&[(0.0, -60.0), (0.0, 60.0)]), east(), route(&[(-1.0, -60.0), (-1.0, 60.0)])]);
-    let first = |leader: f32, own: State| {
-        let mut run = Run::new(&site, WORST);
-        let plan = run.decide(own, &[(1, [20.0, 0.0]), (2, [leader, 0.0])], 3.0).plan;
-        (run, plan)
-    };
-    let mut voided = 0;
+    let site = site(&[
+        east(),
+        route(&[(0.0, -60.0), (0.0, 60.0)]),
+        east(),
+        route(&[(1.0, -60.0), (1.0, 60.0)]),
+    ]);
+    let mut voided = std::vec::Vec::new();
     for v in 4..9_u8 {
-        let own = [57.0, f32::from(v)];
-        let Some(leader) = (600..1190_u16).map(|i| f32::from(i) * 0.1).find(|&leader| first(leader, own).1.is_some()) else {
+        let begin = || {
+            let mut run = Run::new(&site, WORST);
+            let own = [56.6, f32::from(v)];
+            run.decide(own, &[(1, [20.0, 0.0])], 3.0);
+            run.decide([own[0] + 0.1 * own[1], own[1]], &[(1, [20.0, 0.0])], 3.0);
+            (run, [56.6 + 0.2 * f64::from(v) + 0.015, f64::from(v) + 0.3])
+        };
+        let old = |leader: f32| [(1, [20.0, 0.0]), (2, [leader, 0.0])];
+        let narrow = |leader: &f32| {
+            let (mut run, own) = begin();
+            run.decide(own.map(|x| x as f32), &old(*leader), f32::NAN)
+                .plan
+                .is_some()
+        };
+        let Some(leader) = (6000..11900_u16).map(|i| f32::from(i) * 0.01).find(narrow) else {
             continue;
         };
-        let (mut run, plan) = first(leader, own);
-        std::println!("{v} {leader} {plan:?}");
-        let mut state = own.map(f64::from);
-        for frame in 0..12 {
-            let command = run.shield.last.acceleration;
-            state = drive(state, command.into(), 0.1, 100.0);
-            let seen = state.map(|x| x as f32);
-            if seen[0] >= zone(&site, 3).ego.to {
-                break;
+        let (mut run, mut own) = begin();
+        let mut effective = 3.0_f32;
+        let mut seen = ego(&site, own.map(|x| x as f32));
+        for frame in 0..25 {
+            let mut copies = [0, 1].map(|_| Run {
+                site: &site,
+                shield: run.shield.copy(),
+                millis: run.millis,
+            });
+            let place = own.map(|x| x as f32);
+            let alone = copies[0].decide(place, &old(leader), f32::NAN);
+            let with = [old(leader)[0], old(leader)[1], (3, [1.0, 0.0])];
+            let with = copies[1].decide(place, &with, f32::NAN);
+            if with.plan.is_none() && alone.plan.is_some() {
+                voided.push((v, frame, place, alone.plan, with.breach));
             }
-            let mut with = Run { site: &site, shield: run.shield.copy(), millis: run.millis };
-            let old = [(1, [20.0, 0.0]), (2, [leader, 0.0])];
-            let decision = with.decide(seen, &[old[0], old[1], (3, [1.0, 0.0])], 3.0);
-            assert_eq!(decision.breach, None);
-            let alone = run.decide(seen, &old, 3.0);
-            std::println!("  {frame} {seen:?} {:?} {:?} with {:?}", alone.plan, alone.acceleration, decision.plan);
-            voided += u32::from(alone.plan.is_some() && decision.plan.is_none());
+            // Its own state is refused from now on: it carries out the plan.
+            let given = run.observe(seen, &[], f32::NAN).acceleration;
+            seen.s = f32::NAN;
+            own = drive(own, effective.into(), 0.1, 100.0);
+            effective = given;
         }
     }
-    assert_eq!(voided, 0);
+    assert!(voided.is_empty(), "{voided:?}");
 }
