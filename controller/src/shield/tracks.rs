@@ -244,13 +244,7 @@ impl<const N: usize> Tracks<N> {
                 if other.entry::<R>(way, ego.least, spare).is_some() {
                     self.add::<R>((contract, way), ego, other);
                 } else {
-                    self.unwatched.open(number, path);
-                    let meets = way.conflict(path).is_some_and(|it| it.zones().count() > 0);
-                    if meets && !self.watched.is_full() {
-                        // Known, so that it is nobody new when its state is refused.
-                        (other.gone, other.news) = (true, News::None);
-                        let _ = self.watched.push(other);
-                    }
+                    self.leave(way, other);
                 }
             }
             // Nobody knows where it is: its zones may be occupied. One that was seen before is missing.
@@ -271,6 +265,24 @@ impl<const N: usize> Tracks<N> {
         }
     }
 
+    /// One has left its zones. It is known, so that it is nobody new when it seems not to have, or its state is refused.
+    fn leave(&mut self, way: Way<'_>, mut other: Other) {
+        if way
+            .conflict(other.path)
+            .is_none_or(|it| it.zones().count() == 0)
+        {
+            return;
+        }
+        if self.watched.is_full() {
+            self.unwatched
+                .close(other.number, other.path, other.place(), FAR);
+        } else {
+            self.unwatched.open(other.number, other.path);
+            (other.gone, other.news) = (true, News::None);
+            let _ = self.watched.push(other);
+        }
+    }
+
     /// Adds a newcomer. Without room, of those who appear the one whose zones the ego enters last is not watched.
     fn add<R: Rules>(
         &mut self,
@@ -288,7 +300,13 @@ impl<const N: usize> Tracks<N> {
                 open.is_none() && (other.seen || left)
             };
             if let Some(place) = self.watched.iter().position(idle) {
-                self.watched.swap_remove(place);
+                let idle = self.watched.swap_remove(place);
+                let (number, path) = (idle.number, idle.path);
+                self.unwatched.close(number, path, idle.place(), FAR);
+                if let Some(entry) = self.unwatched.placed(number, path) {
+                    // Its track may be yet to come.
+                    entry.seen = false;
+                }
             }
         }
         if !self.watched.is_full() {
@@ -300,11 +318,8 @@ impl<const N: usize> Tracks<N> {
         }
         let (number, path) = (newcomer.number, newcomer.path);
         let Some(mut entry) = newcomer.unsettled::<R>(way, ego.least, 0.0) else {
-            // It has left or keeps its distance, and there is no room to remember it, unless it may seem not to have.
-            match newcomer.unsettled::<R>(way, ego.least, spare) {
-                Some(_) => self.unwatched.close(number, path, newcomer.place(), FAR),
-                None => _ = self.unwatched.open(number, path),
-            }
+            // It has left or keeps its distance, and there is no room to watch it.
+            self.unwatched.close(number, path, newcomer.place(), FAR);
             return;
         };
         // A plan may count on those who are known: only among those who appear with it is there a choice.
