@@ -113,10 +113,11 @@ impl Unwatched {
         };
         // Who has left makes room.
         let left = |it: &Entry| it.from >= FAR;
-        if from < FAR && self.entries.is_full() {
-            if let Some(place) = self.entries.iter().position(left) {
-                self.entries.swap_remove(place);
-            }
+        if from < FAR
+            && self.entries.is_full()
+            && let Some(place) = self.entries.iter().position(left)
+        {
+            self.entries.swap_remove(place);
         }
         if self.entries.push(entry).is_err() && from < FAR {
             self.beyond = sooner(self.beyond, Closed { number, from });
