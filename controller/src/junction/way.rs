@@ -44,7 +44,7 @@ impl<'j> Way<'j> {
 
     /// How the ego's path meets each path, in their order.
     pub fn conflicts(self) -> impl Iterator<Item = (PathId, &'j RouteConflict)> {
-        (0_u8..).map(PathId::new).zip(self.conflicts)
+        (0..=u8::MAX).map(PathId::new).zip(self.conflicts)
     }
 
     /// The points of a path; `None` if there is no such path.

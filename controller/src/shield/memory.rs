@@ -97,7 +97,9 @@ impl Memory {
     /// The ego's acceleration until the command to be given at `now` takes effect: least and most.
     pub(crate) fn in_effect(&self, contract: &Contract, now: Instant) -> [f32; 2] {
         match self.command {
-            Some((command, given)) if now.since(given) + 1 >= micros(contract.latency) => {
+            Some((command, given))
+                if now.since(given).saturating_add(1) >= micros(contract.latency) =>
+            {
                 [command; 2]
             }
             _ => self.possible(contract),

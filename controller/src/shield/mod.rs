@@ -243,7 +243,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
             }
         }
         if let Some(now) = self.clock.last() {
-            self.tracks.rebase(now);
+            self.tracks.rebase::<R>(&self.contract, now);
         }
         self.memory.forget_ego();
         self.replaced |= !contract.keeps_plans_of(&self.contract);
@@ -523,7 +523,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         let (ego, possible) = self.memory.note(&self.contract, ego, now);
         let (ego, deviated) = (&ego, !possible);
         if deviated {
-            self.tracks.iter_mut().for_each(|other| other.counted = 0);
+            self.tracks.count_on_nothing();
         }
         let findings = self.look(when, ego, observation);
         let mut hazards = Hazards::new();
@@ -540,7 +540,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
             in_effect,
             most: most(&self.contract, ego.speed, in_effect[1]),
         };
-        self.verify_again(&scene, now, observation, deviated || recheck);
+        self.verify_again(&scene, now, deviated || recheck);
         let breach = if deviated {
             Some(Breach::Ego)
         } else {
@@ -555,13 +555,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
     }
 
     /// Voids the remembered plan unless it is safe against whoever it was not verified against, or against `all`.
-    fn verify_again(
-        &mut self,
-        scene: &Scene<'_>,
-        now: Instant,
-        observation: &Observation<'_>,
-        all: bool,
-    ) {
+    fn verify_again(&mut self, scene: &Scene<'_>, now: Instant, all: bool) {
         let Some(plan) = self.memory.plan() else {
             return;
         };
@@ -573,10 +567,9 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         let watched = |hazard: &&Hazard| (all || hazard.suspect) && !hazard.is_closed();
         let watched_hold = scene.hazards.iter().filter(watched).all(holds);
         let context = (contract, self.way);
-        let seen = (scene.ego, observation);
         let unwatched_hold = self
             .tracks
-            .unwatched_hold::<R>(context, seen, all, |hazards| hazards.iter().all(holds));
+            .unwatched_hold::<R>(context, scene.ego, all, |hazards| hazards.iter().all(holds));
         if !(watched_hold && unwatched_hold) {
             self.void();
         } else if all {
@@ -586,7 +579,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
 
     fn void(&mut self) {
         self.memory.void();
-        self.tracks.iter_mut().for_each(|other| other.counted = 0);
+        self.tracks.count_on_nothing();
     }
 
     fn decide(&mut self, scene: &Scene<'_>, now: Instant, proposal: f32) -> Decision {

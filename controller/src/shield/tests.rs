@@ -10,6 +10,7 @@ use std::string::ToString;
 
 mod door;
 mod memory;
+mod review;
 
 const WORST: Contract = Contract::WORST_CASE;
 

@@ -32,6 +32,8 @@ pub(crate) struct Other {
     pub(crate) seen: bool,
     /// What is new of it.
     pub(crate) news: News,
+    /// It was not watched before this observation.
+    fresh: bool,
     /// It has no zone ahead any more: it is known only so that it does not count as a newcomer.
     gone: bool,
     /// Lanes that the plan in force enters ahead of it, with the gap that it needs.
@@ -50,6 +52,8 @@ pub(crate) enum News {
     None,
     /// It was not there before.
     Appeared,
+    /// It was there, and nobody watched it.
+    Watched,
     /// It moved beyond the contract's bounds.
     Broke,
 }
@@ -94,11 +98,24 @@ impl<const N: usize> Tracks<N> {
         self.unwatched.retain(|entry| entry.number != number);
     }
 
-    /// Until `now` everybody kept to one contract, from now on to another one.
-    pub(crate) fn rebase(&mut self, now: Instant) {
+    /// Until `now` everybody kept to `contract`, from now on to another one.
+    pub(crate) fn rebase<R: Rules>(&mut self, contract: &Contract, now: Instant) {
         for other in &mut self.watched {
             (other.base, other.at) = (other.bounds, now);
         }
+        for entry in self.unwatched.iter_mut() {
+            if let Place::Known { base, at, .. } = &mut entry.place {
+                (*base, *at) = (R::coast(contract, *base, now.seconds_since(*at)), now);
+            }
+        }
+    }
+
+    /// There is no plan, or not the motion, on which the lanes that the ego enters ahead of somebody counted.
+    pub(crate) fn count_on_nothing(&mut self) {
+        self.watched.iter_mut().for_each(|other| other.counted = 0);
+        self.unwatched
+            .iter_mut()
+            .for_each(|entry| entry.holds = false);
     }
 
     /// Where everybody may be at `now`, if nothing is seen.
@@ -127,6 +144,7 @@ impl<const N: usize> Tracks<N> {
         let mut findings = Findings::default();
         for other in &mut self.watched {
             other.news = News::None;
+            other.fresh = false;
         }
         self.unwatched.begin();
         self.coast::<R>(contract, now);
@@ -165,9 +183,7 @@ impl<const N: usize> Tracks<N> {
         for candidate in track.candidates() {
             // One that has appeared in this observation is a newcomer to the next track with its number, too.
             let known = self.watched.iter().any(|other| {
-                other.number == number
-                    && other.path == candidate.path
-                    && other.news != News::Appeared
+                other.number == number && other.path == candidate.path && !other.fresh
             });
             if known != newcomers {
                 self.note_candidate::<R>(context, when, (track, candidate), findings);
@@ -205,8 +221,21 @@ impl<const N: usize> Tracks<N> {
             (Some(other), Ok(vehicle)) => other.meet(contract, &vehicle, now, findings),
             // It coasts.
             (Some(_), Err(fault)) => findings.fault = findings.fault.or(Some(fault)),
+            // Two of one number for whom there is no room.
+            (None, _)
+                if self
+                    .unwatched
+                    .placed(number, path)
+                    .is_some_and(|it| it.seen) =>
+            {
+                findings.fault = findings.fault.or(Some(door::twice(number)));
+                self.close_unplaced(way, ego, (track, path));
+            }
             (None, Ok(vehicle)) => {
                 let mut other = Other::new(contract, number, path, &vehicle, now);
+                if let Some(entry) = self.unwatched.placed(number, path) {
+                    other.follow::<R>(contract, &vehicle, entry, findings);
+                }
                 if let Some(conflict) = way.conflict(path) {
                     hazard::settle::<R>(contract, conflict.zones(), ego, &mut other);
                 }
@@ -215,13 +244,15 @@ impl<const N: usize> Tracks<N> {
                 if other.entry::<R>(way, ego.least, spare).is_some() {
                     self.add::<R>((contract, way), ego, other);
                 } else {
-                    self.unwatched.open(number, path);
+                    self.leave(way, other);
                 }
             }
-            // Nobody knows where it is: its zones may be occupied.
+            // Nobody knows where it is: its zones may be occupied. One that was seen before is missing.
             (None, Err(fault)) => {
                 findings.fault = findings.fault.or(Some(fault));
-                self.close_unplaced(way, ego, (track, path));
+                if self.unwatched.placed(number, path).is_none() {
+                    self.close_unplaced(way, ego, (track, path));
+                }
             }
         }
     }
@@ -231,6 +262,24 @@ impl<const N: usize> Tracks<N> {
         if let Some(from) = unplaced(way, path, track.class, ego.least) {
             self.unwatched
                 .close(track.number, path, Place::Unknown, from);
+        }
+    }
+
+    /// One has left its zones. It is known, so that it is nobody new when it seems not to have, or its state is refused.
+    fn leave(&mut self, way: Way<'_>, mut other: Other) {
+        if way
+            .conflict(other.path)
+            .is_none_or(|it| it.zones().count() == 0)
+        {
+            return;
+        }
+        if self.watched.is_full() {
+            self.unwatched
+                .close(other.number, other.path, other.place(), FAR);
+        } else {
+            self.unwatched.open(other.number, other.path);
+            (other.gone, other.news) = (true, News::None);
+            let _ = self.watched.push(other);
         }
     }
 
@@ -251,7 +300,13 @@ impl<const N: usize> Tracks<N> {
                 open.is_none() && (other.seen || left)
             };
             if let Some(place) = self.watched.iter().position(idle) {
-                self.watched.swap_remove(place);
+                let idle = self.watched.swap_remove(place);
+                let (number, path) = (idle.number, idle.path);
+                self.unwatched.close(number, path, idle.place(), FAR);
+                if let Some(entry) = self.unwatched.placed(number, path) {
+                    // Its track may be yet to come.
+                    entry.seen = false;
+                }
             }
         }
         if !self.watched.is_full() {
@@ -263,21 +318,21 @@ impl<const N: usize> Tracks<N> {
         }
         let (number, path) = (newcomer.number, newcomer.path);
         let Some(mut entry) = newcomer.unsettled::<R>(way, ego.least, 0.0) else {
-            // It has left or keeps its distance, and there is no room to remember it, unless it may seem not to have.
-            match newcomer.unsettled::<R>(way, ego.least, spare) {
-                Some(_) => self.unwatched.close(number, path, Place::Known, FAR),
-                None => _ = self.unwatched.open(number, path),
-            }
+            // It has left or keeps its distance, and there is no room to watch it.
+            self.unwatched.close(number, path, newcomer.place(), FAR);
             return;
         };
         // A plan may count on those who are known: only among those who appear with it is there a choice.
         for other in self
             .watched
             .iter_mut()
-            .filter(|other| other.news == News::Appeared)
+            .filter(|other| matches!(other.news, News::Appeared | News::Watched))
         {
             match other.unsettled::<R>(way, ego.least, 0.0) {
                 Some(its) if its > entry => {
+                    if self.unwatched.open(newcomer.number, newcomer.path) {
+                        newcomer.news = News::None;
+                    }
                     core::mem::swap(other, &mut newcomer);
                     entry = its;
                 }
@@ -285,7 +340,7 @@ impl<const N: usize> Tracks<N> {
             }
         }
         self.unwatched
-            .close(newcomer.number, newcomer.path, Place::Known, entry);
+            .close(newcomer.number, newcomer.path, newcomer.place(), entry);
     }
 
     /// Whether the plan in force is safe from everybody who is not watched; `holds` judges it against some hazards.
@@ -293,7 +348,7 @@ impl<const N: usize> Tracks<N> {
     pub(crate) fn unwatched_hold<R: Rules>(
         &mut self,
         (contract, way): (&Contract, Way<'_>),
-        (ego, seen): (&Own, &Observation<'_>),
+        ego: &Own,
         all: bool,
         holds: impl Fn(&[Hazard]) -> bool,
     ) -> bool {
@@ -301,7 +356,7 @@ impl<const N: usize> Tracks<N> {
         for entry in self.unwatched.iter_mut().filter(|it| all || !it.holds) {
             let Entry { number, from, .. } = *entry;
             entry.holds = stays_out(Closed { number, from })
-                || newcomer::<R>((contract, way), (ego, seen), entry)
+                || newcomer::<R>((contract, way), ego, entry)
                     .is_some_and(|hazards| holds(&hazards));
         }
         let beyond = self.unwatched.beyond();
@@ -319,19 +374,18 @@ impl<const N: usize> Tracks<N> {
 /// The hazards of somebody who is seen and not watched.
 fn newcomer<R: Rules>(
     (contract, way): (&Contract, Way<'_>),
-    (ego, seen): (&Own, &Observation<'_>),
+    ego: &Own,
     entry: &Entry,
 ) -> Option<Vec<Hazard, MAX_ZONES>> {
     let Entry { number, path, .. } = *entry;
-    let placed = |track: &Track| {
-        let candidate = track.candidates().find(|it| it.path == path)?;
-        door::track(way, contract, track, candidate).ok()
+    let Place::Known { base, at, settled } = entry.place else {
+        return None;
     };
-    let track = seen.tracks.iter().find(|track| track.number == number)?;
-    let vehicle = placed(track).filter(|_| entry.seen && entry.place == Place::Known)?;
-    let conflict = way.conflict(path)?;
-    let mut other = Other::new(contract, number, path, &vehicle, Instant::default());
-    hazard::settle::<R>(contract, conflict.zones(), ego, &mut other);
+    let conflict = way.conflict(path).filter(|_| entry.seen)?;
+    let other = Other {
+        settled,
+        ..Other::at(number, path, 0.0, base, at)
+    };
     Some(
         hazard::of::<R>(contract, conflict, ego, &other)
             .map(|(_, hazard)| hazard)
@@ -349,6 +403,11 @@ impl Other {
     ) -> Self {
         let speed = vehicle.speed;
         let bounds = Bounds::sensed(contract, vehicle.s, speed);
+        Self::at(number, path, speed, bounds, now)
+    }
+
+    /// One that appears, sensed at `speed` (m/s).
+    fn at(number: u16, path: PathId, speed: f32, bounds: Bounds, now: Instant) -> Self {
         Self {
             number,
             path,
@@ -358,11 +417,48 @@ impl Other {
             bounds,
             seen: true,
             news: News::Appeared,
+            fresh: true,
             gone: false,
             counted: 0,
             settled: 0,
             pair: PairMemory::default(),
             claims: 0,
+        }
+    }
+
+    /// What is remembered of it without watching it.
+    const fn place(&self) -> Place {
+        Place::Known {
+            base: self.base,
+            at: self.at,
+            settled: self.settled,
+        }
+    }
+
+    /// Notes what was known of it while nobody watched it.
+    fn follow<R: Rules>(
+        &mut self,
+        contract: &Contract,
+        vehicle: &Vehicle,
+        entry: &mut Entry,
+        findings: &mut Findings,
+    ) {
+        let Place::Known { base, at, settled } = entry.place else {
+            return;
+        };
+        let bounds = R::coast(contract, base, self.at.seconds_since(at));
+        if bounds.allow(contract, vehicle.s, vehicle.speed) {
+            self.news = News::Watched;
+            self.settled = settled;
+            // A plan in force that is safe from it enters no lane ahead of it without the gap.
+            self.counted = if entry.holds { ZoneSet::MAX } else { 0 };
+            return;
+        }
+        entry.holds = false;
+        // Another one, by the number of one that has left.
+        if entry.from < FAR {
+            self.news = News::Watched;
+            findings.breach = findings.breach.or(Some(self.number));
         }
     }
 
@@ -388,7 +484,10 @@ impl Other {
             }
         } else if self.gone {
             // Another one, by the number of one that has left.
-            *self = Self::new(contract, self.number, self.path, vehicle, now);
+            *self = Self {
+                fresh: false,
+                ..Self::new(contract, self.number, self.path, vehicle, now)
+            };
         } else {
             self.news = News::Broke;
             (self.counted, self.settled) = (0, 0);

@@ -1,5 +1,8 @@
 //! Vehicles that matter and for whom there is no room: their zones are closed.
 
+use super::bounds::Bounds;
+use super::precedence::ZoneSet;
+use crate::instant::Instant;
 use crate::junction::zone::{FAR, Zone};
 use crate::junction::{Class, PathId, RouteConflict, Way};
 use crate::real::Real;
@@ -32,12 +35,25 @@ pub(super) struct Entry {
 }
 
 /// What is known of where an unwatched vehicle is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Place {
     /// On its path.
-    Known,
+    Known {
+        /// Where it was when it was seen last.
+        base: Bounds,
+        /// When that was.
+        at: Instant,
+        /// Lanes in which the ego is ahead of it, and it has had the gap to keep its distance.
+        settled: ZoneSet,
+    },
     /// Nothing. One that is not seen again was perhaps never there.
     Unknown,
+}
+
+impl Entry {
+    const fn is_placed(&self) -> bool {
+        matches!(self.place, Place::Known { .. })
+    }
 }
 
 /// Everybody who is not watched.
@@ -73,9 +89,11 @@ impl Unwatched {
 
     /// One is seen whose first zone begins at `from` (m).
     pub(super) fn close(&mut self, number: u16, path: PathId, place: Place, from: f32) {
-        let key = (number, path, place);
-        let known = |entry: &&mut Entry| (entry.number, entry.path, entry.place) == key;
+        let placed = matches!(place, Place::Known { .. });
+        let key = (number, path, placed);
+        let known = |entry: &&mut Entry| (entry.number, entry.path, entry.is_placed()) == key;
         if let Some(entry) = self.entries.iter_mut().find(known) {
+            entry.place = place;
             // The same twice: both count.
             entry.from = if entry.seen {
                 Real::min(entry.from, from)
@@ -93,14 +111,32 @@ impl Unwatched {
             seen: true,
             holds: false,
         };
-        if self.entries.push(entry).is_err() {
+        // Who has left makes room.
+        let left = |it: &Entry| it.from >= FAR;
+        if from < FAR
+            && self.entries.is_full()
+            && let Some(place) = self.entries.iter().position(left)
+        {
+            self.entries.swap_remove(place);
+        }
+        if self.entries.push(entry).is_err() && from < FAR {
             self.beyond = sooner(self.beyond, Closed { number, from });
         }
     }
 
+    /// Who is known to be on its path.
+    pub(super) fn placed(&mut self, number: u16, path: PathId) -> Option<&mut Entry> {
+        let key = (number, path, true);
+        let known = |entry: &&mut Entry| (entry.number, entry.path, entry.is_placed()) == key;
+        self.entries.iter_mut().find(known)
+    }
+
     /// One is watched from now on, or matters no more. Whether the plan in force is safe from it.
     pub(super) fn open(&mut self, number: u16, path: PathId) -> bool {
-        let it = |entry: &Entry| (entry.number, entry.path) == (number, path);
+        // Not another one with its number, that is seen somewhere in this observation.
+        let it = |entry: &Entry| {
+            (entry.number, entry.path) == (number, path) && (entry.is_placed() || !entry.seen)
+        };
         let holds = self.entries.iter().any(|entry| it(entry) && entry.holds);
         self.entries.retain(|entry| !it(entry));
         holds
@@ -116,8 +152,10 @@ impl Unwatched {
     pub(super) fn end(&mut self, way: Way<'_>, ego: f32) -> Option<Closed> {
         let ahead = |path| way.conflict(path).and_then(|it| first_zone(it, ego));
         self.entries
-            .retain(|it| it.seen || (it.place == Place::Known && ahead(it.path).is_some()));
-        for entry in self.entries.iter_mut().filter(|entry| !entry.seen) {
+            .retain(|it| it.seen || (it.is_placed() && ahead(it.path).is_some()));
+        // Who has left its zones has left them for ever.
+        let missing = |entry: &&mut Entry| !entry.seen && entry.from < FAR;
+        for entry in self.entries.iter_mut().filter(missing) {
             if let Some(from) = ahead(entry.path) {
                 entry.from = from;
             }
