@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::threads::Threads;
 use cede_data::output;
-use cede_verify::lemma::{Answer, Lemma, Quantity, Settled, Solver, SolverError, lemmas};
+use cede_verify::lemma::{Answer, Lemma, Quantity, Settled, Solver, SolverError, lemmas, shipped};
 use clap::Args;
 use rayon::prelude::*;
 use std::io::Write as _;
@@ -29,9 +29,10 @@ pub(crate) struct Lemmas {
     /// Time limit per query in seconds.
     #[arg(long, value_name = "SECONDS", default_value_t = 60)]
     timeout: u64,
-    /// Also write the queries to this folder as SMT-LIB files.
-    #[arg(long, value_name = "DIR")]
-    write: Option<PathBuf>,
+    /// Also write the queries to this folder as SMT-LIB files. `--write rocq FILE`: write the bounds and margins to this
+    /// file as Rocq definitions, and prove nothing.
+    #[arg(long, value_names = ["DIR", "FILE"], num_args = 1..=2)]
+    write: Vec<PathBuf>,
     #[command(flatten)]
     threads: Threads,
     /// Print one JSON object instead.
@@ -49,8 +50,17 @@ impl Lemmas {
             .into_iter()
             .filter(|lemma| self.only.as_deref().is_none_or(|only| only == lemma.id))
             .collect();
-        if let Some(folder) = &self.write {
-            write(folder, &chosen)?;
+        match self.write.as_slice() {
+            [] => {}
+            [folder] => write(folder, &chosen)?,
+            [_, file] if self.write[0] == Path::new("rocq") => {
+                output::write(file, |file| file.write_all(shipped().as_bytes()))?;
+                return Ok(());
+            }
+            [form, ..] => {
+                let mend = "the form to write before FILE is rocq";
+                return Err(Failure::input(format!("no such form: {}", form.display()), mend));
+            }
         }
         let solver = Solver::find(self.solver.as_deref()).map_err(unusable)?;
         let rows = self.settle(&solver, chosen)?;
