@@ -104,13 +104,68 @@ Proof.
   pose proof (first (t1 + x) ltac:(lra) ltac:(lra)). lra.
 Qed.
 
+(* Nor does the place of rest move on. *)
+Lemma rests_by s v b V t1 t2 :
+  motion s v -> 0 < b -> t1 <= t2 -> speeds_up_at_most v (- b) t1 t2 -> v t1 <= V ->
+  s t2 - s t1 + v t2 * v t2 / (b + b) <= V * V / (b + b).
+Proof.
+  intros m b0 le up v1. pose proof (forwards s v m) as pos. pose proof (pos t1). pose proof (pos t2).
+  destruct (Req_dec (v t2) 0) as [z | nz].
+  { rewrite z. pose proof (stops_by s v b V t1 t2 m b0 le up v1). replace (0 * 0 / (b + b)) with 0 by (field; lra). lra. }
+  assert (line : forall u, t1 <= u <= t2 -> v u <= V + - b * (u - t1)).
+  { intros u [? ?]. pose proof (up u t2 ltac:(lra) ltac:(lra) ltac:(lra)) as U2.
+    pose proof (up t1 u ltac:(lra) ltac:(lra) ltac:(lra)) as U1. revert U1 U2.
+    assert (0 <= b * (t2 - u)) by (apply Rmult_le_pos; lra). pose proof (pos u). cases; lra. }
+  pose proof (below_line s v V (- b) t1 t2 m le line) as B. pose proof (line t2 ltac:(lra)) as L.
+  assert (v t2 * v t2 / (b + b) <= (V - b * (t2 - t1)) * (V - b * (t2 - t1)) / (b + b)).
+  { apply Rmult_le_compat_r; [left; apply Rinv_0_lt_compat; lra | nra]. }
+  replace (V * V / (b + b)) with
+    (V * (t2 - t1) + - b * (t2 - t1) * (t2 - t1) / 2 + (V - b * (t2 - t1)) * (V - b * (t2 - t1)) / (b + b)) by (field; lra).
+  lra.
+Qed.
+
 (* From within r, braking at b or harder, the ego is at rest by rest_of r b. *)
 Lemma rest_holds s v s0 b r t1 t2 :
   motion s v -> 0 < b -> t1 <= t2 -> speeds_up_at_most v (- b) t1 t2 ->
-  s t1 - s0 <= distance r -> v t1 <= speed r -> s t2 - s0 <= rest_of r b.
+  s t1 - s0 <= distance r -> v t1 <= speed r -> s t2 - s0 + v t2 * v t2 / (b + b) <= rest_of r b.
 Proof.
   intros m b0 le up d1 v1.
-  pose proof (stops_by s v b (speed r) t1 t2 m b0 le up v1). unfold rest_of. lra.
+  pose proof (rests_by s v b (speed r) t1 t2 m b0 le up v1). unfold rest_of. lra.
+Qed.
+
+(* Who is within a reach would be at rest by its place of rest. *)
+Lemma rest_of_within (s v : R -> R) s0 b r t :
+  0 < b -> 0 <= v t -> s t - s0 <= distance r -> v t <= speed r ->
+  s t - s0 + v t * v t / (b + b) <= rest_of r b.
+Proof.
+  intros. unfold rest_of.
+  assert (v t * v t / (b + b) <= speed r * speed r / (b + b)); [| lra].
+  apply Rmult_le_compat_r; [left; apply Rinv_0_lt_compat; lra | nra].
+Qed.
+
+(* L9 for a bound: braking no harder than b for a while moves the place of rest no nearer. *)
+Lemma at_most_rest_grows r a b x y :
+  0 <= speed r -> 0 < b -> - b <= a -> 0 <= x <= y ->
+  rest_of (at_most r a x) b <= rest_of (at_most r a y) b.
+Proof.
+  intros v0 b0 ab [x0 xy]. unfold rest_of. cbn. set (P := speed r) in *.
+  assert (two : forall z, z / (b + b) * (b + b) = z) by (intros; field; lra).
+  assert (positive : forall p q, 0 <= p -> p <= q -> 0 <= P + a * p -> 0 <= P + a * q ->
+            (P + (P + a * p)) * p * (1 / 2) + (P + a * p) * (P + a * p) / (b + b)
+            <= (P + (P + a * q)) * q * (1 / 2) + (P + a * q) * (P + a * q) / (b + b)).
+  { intros p q ? ? ? ?. apply Rmult_le_reg_r with (b + b); [lra |]. rewrite !Rmult_plus_distr_r, !two.
+    assert (0 <= (q - p) * (b + a) * ((P + a * p) + (P + a * q))) by (repeat apply Rmult_le_pos; lra). lra. }
+  destruct (Rle_dec 0 (P + a * x)), (Rle_dec 0 (P + a * y)).
+  - rewrite !Rmax_left by lra. pose proof (positive x y ltac:(lra) ltac:(lra) ltac:(lra) ltac:(lra)). lra.
+  - rewrite Rmax_left, Rmax_right by lra.
+    assert (a < 0) by nra.
+    set (z := P / - a). assert (Z : P + a * z = 0) by (unfold z; field; lra).
+    assert (x <= z) by nra. assert (z <= y) by nra.
+    pose proof (positive x z ltac:(lra) ltac:(lra) ltac:(lra) ltac:(lra)) as A. rewrite Z in A.
+    assert (P * z <= P * y) by (apply Rmult_le_compat_l; lra).
+    replace (0 * 0 / (b + b)) with 0 in * by (field; lra). lra.
+  - exfalso. assert (a < 0) by nra. assert (a * y <= a * x) by nra. lra.
+  - rewrite !Rmax_right by lra. assert (P * x <= P * y) by (apply Rmult_le_compat_l; lra). lra.
 Qed.
 
 (** * at_least *)
