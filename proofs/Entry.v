@@ -143,11 +143,12 @@ Lemma rushing_shift d w ah cap x :
   speed (rushing {| distance := d; speed := w |} ah cap x) = speed (rushing {| distance := 0; speed := w |} ah cap x).
 Proof. cbn. split; [ring | reflexivity]. Qed.
 
-(* With the gap that is verified for when the ego has certainly entered, the gap is safe whenever it does enter. *)
+(* With the gap that is verified for when the ego has certainly entered, the gap is safe whenever it does enter, by the
+   slack at least. *)
 Lemma entry_sooner k W gap clears x ve V :
   valid k -> 0 <= x <= clears -> 0 <= ve -> 0 <= V -> grows k ve V (clears - x) ->
   0 <= enters_ahead k gap (rush k W clears) (safe_gap k (speed (rush k W clears)) V) ->
-  safe_gap k (speed (rush k W x)) ve <= gap - distance (rush k W x).
+  safe_gap k (speed (rush k W x)) ve <= gap - distance (rush k W x) - slack k.
 Proof.
   intros ok [x0 xc] ve0 V0 [g1 g2] spare. unfold enters_ahead in spare.
   rewrite safe_gap_nonneg in * by assumption.

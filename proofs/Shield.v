@@ -147,8 +147,9 @@ Proof.
 Qed.
 
 (* The ego enters a lane with a safe gap. *)
-Lemma enters_safely u : enters k z o (b i0) d n -> T <= u <= E -> s_in z <= s u ->
-  exists x, T <= x <= u /\ s_in z <= s x /\ safe k z (s x) (v x) (t x) (w x).
+Lemma enters_ahead_safely u : enters k z o (b i0) d n -> T <= u <= E -> s_in z <= s u ->
+  exists x, T <= x <= u /\ s_in z <= s x /\ (s T < s_in z -> s x = s_in z) /\
+    safe_gap k (w x) (v x) + slack k <= s x - t x - lead_to z.
 Proof.
   unfold enters. intros en [lo hi] inn.
   destruct where_ as (sT & vT & least_). destruct what as [tT wT]. destruct command_range as [ca cp].
@@ -160,18 +161,19 @@ Proof.
               ltac:(destruct vT; lra) cp (proj2 ca) it) as (c0 & V0 & gone & slow).
   change (departure k (own_v o) (previous_least l i0) (previous_most l i0) (c i0)) with d in c0, V0, gone, slow.
   rewrite cl in *. cbn [fst snd] in *.
-  assert (entry : exists x, T <= x <= u /\ x <= T + clears /\ Rmax (s_in z) (own_least o) <= s x).
+  assert (entry : exists x, T <= x <= u /\ x <= T + clears /\ Rmax (s_in z) (own_least o) <= s x /\
+            (s T < s_in z -> s x = s_in z)).
   { destruct (Rle_dec (s_in z) (s T)) as [within | before].
-    - exists T. split; [lra |]. split; [lra |]. apply Rmax_lub; lra.
+    - exists T. split; [lra |]. split; [lra |]. split; [apply Rmax_lub; lra | lra].
     - assert (M : Rmax (s_in z) (own_least o) = s_in z) by (apply Rmax_left; lra). rewrite M.
       destruct (Rle_dec u (T + clears)) as [early | late].
       + destruct (Motion.passes s v T u (s_in z) ego_moves lo ltac:(lra)) as (x & ? & e). exists x. lra.
       + specialize (gone ltac:(lra)).
         destruct (Motion.passes s v T (T + clears) (s_in z) ego_moves ltac:(lra)) as (x & ? & e); [unfold target in gone; lra |].
         exists x. lra. }
-  destruct entry as (x & [x1 x2] & x3 & at_).
+  destruct entry as (x & [x1 x2] & x3 & at_ & exactly).
   pose proof (Rmax_l (s_in z) (own_least o)).
-  exists x. split; [lra |]. split; [lra |].
+  exists x. split; [lra |]. split; [lra |]. split; [exact exactly |].
   pose proof (entry_sooner k (w_most (b i0)) (gap_ahead z o (b i0)) clears (x - T) (v x) V ok ltac:(lra)
     (forwards s v ego_moves x) V0) as G.
   replace (clears - (x - T)) with (T + clears - x) in G by ring.
@@ -183,7 +185,14 @@ Proof.
   { cbn. cases; lra. }
   rewrite <- rush_is in B1, B2.
   pose proof (safe_gap_monotone k (w x) _ (v x) (v x) ok B2 (forwards s v ego_moves x) (Rle_refl _)) as M.
-  unfold safe. unfold gap_ahead in G. lra.
+  unfold gap_ahead in G. lra.
+Qed.
+
+Lemma enters_safely u : enters k z o (b i0) d n -> T <= u <= E -> s_in z <= s u ->
+  exists x, T <= x <= u /\ s_in z <= s x /\ safe k z (s x) (v x) (t x) (w x).
+Proof.
+  intros en hu inn. destruct (enters_ahead_safely u en hu inn) as (x & hx & sx & _ & gap).
+  exists x. unfold safe. assert (0 < slack k) by (destruct ok; lra). split; [exact hx |]. split; [exact sx | lra].
 Qed.
 End Carried.
 

@@ -234,19 +234,42 @@ Record keeps_all (k : contract) (path : Type) (zones : path -> list zone) (s v :
   starts : (1 <= since o)%nat
 }.
 
-(* Theorem 1. While the contract holds, and every zone of every candidate path of every other is judged at every call,
-   the ego never overlaps an other, at any time from the first call at which it is seen. *)
-Definition Theorem1 := forall (k : contract) (path : Type) (zones : path -> list zone)
+(* While the contract holds, and every zone of every candidate path of every other is judged at every call, the ego never
+   overlaps an other, at any time from the first call at which it is seen. The conditions on contract and others are
+   arguments, so that Controls.v can leave one out. *)
+Definition Guarantee
+    (contracts : contract -> Prop)
+    (conduct : forall k path, (path -> list zone) -> (R -> R) -> (R -> R) -> (nat -> R) -> log -> other path -> Prop) :=
+  forall (k : contract) (path : Type) (zones : path -> list zone)
     (occupied : path -> R -> R -> Prop) (s v : R -> R) (tau c : nat -> R) (l : log) (others : other path -> Prop),
-  valid k ->
+  contracts k ->
   (forall p, cover (zones p) (occupied p)) ->
   motion s v -> on_grid k tau -> obeys k v tau c -> true_log k l s v tau c ->
-  (forall o, others o -> keeps_all k path zones s v tau l o) ->
+  (forall o, others o -> conduct k path zones s v tau l o) ->
   (forall o i p z, others o -> (since o <= i)%nat -> candidates o i p -> In z (zones p) ->
     judged k l c (view o p) z (since o) i) ->
   forall o u, others o -> tau (since o) <= u -> ~ occupied (on o) (s u) (place o u).
 
-(* Theorem 2. Of two shielded vehicles that enter a lane, at most one enters as the one ahead. They see mirrored zones. *)
+Definition Theorem1 := Guarantee valid keeps_all.
+
+(* Two vehicles see mirrored zones of each other. *)
 Definition mirrored (z y : zone) :=
   s_in y = t_in z /\ s_out y = t_out z /\ t_in y = s_in z /\ t_out y = s_out z /\
   lead_from y = - lead_to z /\ lead_to y = - lead_from z.
+
+(* The corner of the box is in the band. *)
+Definition corner_in_band (z : zone) := lead_from z <= s_in z - t_in z <= lead_to z.
+
+(* A shielded vehicle that was before the lane when its plan was verified is at its beginning now, at time x, and the plan
+   in force enters the lane ahead of the other. *)
+Definition comes_in_ahead (k : contract) (z : zone) (s v t w : R -> R) (x : R) :=
+  exists (tau c : nat -> R) (l : log) (b : nat -> bounds) (i0 i : nat),
+    on_grid k tau /\ obeys k v tau c /\ true_log k l s v tau c /\
+    keeps_contract k w (tau i0) /\ (forall j, (i0 <= j)%nat -> known k t w (tau i0) (tau j) (b j)) /\
+    (1 <= i0 <= i)%nat /\ (forall j, (i0 <= j < i)%nat -> carries_on k l c j) /\ enters_at k l c b z i0 /\
+    s (tau i0) < s_in z /\ tau i0 <= x <= tau (S i) /\ s x = s_in z /\ (forall u, u < x -> s u < s_in z).
+
+(* Theorem 2. Of two shielded vehicles that enter a lane, at most one enters as the one ahead, in whatever order. *)
+Definition Theorem2 := forall k z y s v t w x1 x2,
+  valid k -> mirrored z y -> corner_in_band z -> motion s v -> motion t w ->
+  comes_in_ahead k z s v t w x1 -> ~ comes_in_ahead k y t w s v x2.
