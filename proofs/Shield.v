@@ -275,7 +275,7 @@ End Zone.
 
 Theorem verified_plans_keep_apart : Theorem1.
 Proof.
-  intros k path zones occupied s v tau c l others ok cov em grid obey true keeps judged_all o u oo lo occ.
+  intros k path zones occupied s v tau c l others (ok & cov & em & grid & obey & true & keeps & judged_all) o u oo lo occ.
   destruct (cov (on o) (s u) (place o u) occ) as (z & zin & ins).
   destruct (keeps o oo) as [om c2 c3 c6 a9 a11 st].
   destruct (between_calls k tau ok grid (since o) st u lo) as (i & hi & hu).

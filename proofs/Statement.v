@@ -234,22 +234,29 @@ Record keeps_all (k : contract) (path : Type) (zones : path -> list zone) (s v :
   starts : (1 <= since o)%nat
 }.
 
-(* While the contract holds, and every zone of every candidate path of every other is judged at every call, the ego never
-   overlaps an other, at any time from the first call at which it is seen. The conditions on contract and others are
-   arguments, so that Controls.v can leave one out. *)
-Definition Guarantee
-    (contracts : contract -> Prop)
-    (conduct : forall k path, (path -> list zone) -> (R -> R) -> (R -> R) -> (nat -> R) -> log -> other path -> Prop) :=
-  forall (k : contract) (path : Type) (zones : path -> list zone)
-    (occupied : path -> R -> R -> Prop) (s v : R -> R) (tau c : nat -> R) (l : log) (others : other path -> Prop),
-  contracts k ->
-  (forall p, cover (zones p) (occupied p)) ->
-  motion s v -> on_grid k tau -> obeys k v tau c -> true_log k l s v tau c ->
-  (forall o, others o -> conduct k path zones s v tau l o) ->
+(* The conditions: a valid contract, zones that cover, an ego that obeys what it is commanded, a true log, others that keep
+   the contract, and a shield that judges every zone of every candidate path of every other at every call.
+   What is demanded of contract and others is an argument, so that Controls.v can leave something out. *)
+Definition conducts := forall (k : contract) (path : Type),
+  (path -> list zone) -> (R -> R) -> (R -> R) -> (nat -> R) -> log -> other path -> Prop.
+
+Definition Conditions (contracts : contract -> Prop) (conduct : conducts)
+    (k : contract) (path : Type) (zones : path -> list zone) (occupied : path -> R -> R -> Prop)
+    (s v : R -> R) (tau c : nat -> R) (l : log) (others : other path -> Prop) :=
+  contracts k /\
+  (forall p, cover (zones p) (occupied p)) /\
+  motion s v /\ on_grid k tau /\ obeys k v tau c /\ true_log k l s v tau c /\
+  (forall o, others o -> conduct k path zones s v tau l o) /\
   (forall o i p z, others o -> (since o <= i)%nat -> candidates o i p -> In z (zones p) ->
-    judged k l c (view o p) z (since o) i) ->
+    judged k l c (view o p) z (since o) i).
+
+(* Then the ego never overlaps an other, at any time from the first call at which it is seen. *)
+Definition Guarantee (contracts : contract -> Prop) (conduct : conducts) :=
+  forall k path zones occupied s v tau c l others,
+  Conditions contracts conduct k path zones occupied s v tau c l others ->
   forall o u, others o -> tau (since o) <= u -> ~ occupied (on o) (s u) (place o u).
 
+(* Theorem 1. *)
 Definition Theorem1 := Guarantee valid keeps_all.
 
 (* Two vehicles see mirrored zones of each other. *)
