@@ -24,7 +24,8 @@ Record contract := {
   other_acceleration : R; (* â *)
   other_braking : R;      (* b̂ *)
   follower_reaction : R;  (* ρ *)
-  follower_braking : R    (* b̂_f *)
+  follower_braking : R;   (* b̂_f *)
+  precedence_braking : R  (* the rule's braking, with C7 *)
 }.
 
 (* (i), jitter: the least time from a call to the next one, and the time that a command may take from its turn on.
@@ -55,6 +56,7 @@ Record valid (k : contract) : Prop := {
   other_braking_pos : 0 < other_braking k;
   follower_reaction_nonneg : 0 <= follower_reaction k;
   follower_braking_pos : 0 < follower_braking k;
+  precedence_braking_pos : 0 < precedence_braking k;
   A1 : ego_braking k <= other_braking k;
   A2 : follower_braking k <= other_braking k;
   A3_latency : latency k + 6 * jitter k <= period k;

@@ -24,7 +24,7 @@ Definition world_log : log := {|
 Definition world_commands (_ : nat) := - ego_braking k.
 Definition world_view (_ : unit) (i : nat) := sensed k (t (INR i)) (w (INR i)).
 Definition world_other : other unit := {|
-  place := t; rate := w; on := tt; since := 1%nat; candidates _ _ := True; view := world_view |}.
+  place := t; rate := w; on := tt; since := 1%nat; candidates _ _ := True; view := world_view; claims _ _ _ := False |}.
 
 Lemma later_than_one i : 1 <= INR (S i).
 Proof. rewrite S_INR. pose proof (pos_INR i). lra. Qed.
@@ -51,8 +51,8 @@ Lemma world_carries i : carries_on k world_log world_commands i.
 Proof. split; reflexivity. Qed.
 
 Lemma world_conditions (contracts : contract -> Prop) (conduct : conducts) :
-  contracts k -> conduct k unit (fun _ => [z]) s v INR world_log world_other ->
-  (forall i, (1 <= i)%nat -> judged k world_log world_commands (world_view tt) z 1 i) ->
+  contracts k -> conduct k unit (fun _ => [z]) s v INR world_commands world_log world_other ->
+  (forall i, (1 <= i)%nat -> judged k world_log world_commands (world_view tt) z (fun _ => False) 1 i) ->
   Conditions contracts conduct k unit (fun _ => [z]) (fun _ => inside z) s v INR world_commands world_log
     (fun o => o = world_other).
 Proof.
@@ -69,8 +69,8 @@ Qed.
 
 (* A world in which they overlap. *)
 Lemma overlap_refutes (contracts : contract -> Prop) (conduct : conducts) u :
-  contracts k -> conduct k unit (fun _ => [z]) s v INR world_log world_other ->
-  (forall i, (1 <= i)%nat -> judged k world_log world_commands (world_view tt) z 1 i) ->
+  contracts k -> conduct k unit (fun _ => [z]) s v INR world_commands world_log world_other ->
+  (forall i, (1 <= i)%nat -> judged k world_log world_commands (world_view tt) z (fun _ => False) 1 i) ->
   1 <= u -> inside z (s u) (t u) -> ~ Guarantee contracts conduct.
 Proof.
   intros good keeps judges lo ins guaranteed.
@@ -140,7 +140,7 @@ Definition round (b bh f slk : R) : contract := {|
   period := 1; latency := 0; jitter := 0; position_error := 0; speed_error := 0; slack := slk;
   ego_max_speed := 10; ego_acceleration := 1; ego_go := 1; ego_braking := b;
   other_max_speed := 10; other_acceleration := 1; other_braking := bh;
-  follower_reaction := 1; follower_braking := f |}.
+  follower_reaction := 1; follower_braking := f; precedence_braking := 1 |}.
 
 Lemma round_valid b bh f slk : 1 <= b -> b <= bh -> 0 < f -> f <= bh -> 0 < slk -> valid (round b bh f slk).
 Proof.
@@ -184,6 +184,7 @@ Proof.
       + intros i hi. apply (world_known k (fun _ => 0) (fun _ => 0)); [split; reflexivity | exact hi].
       + intros zz [<- | []] _ T u ? ? ? gap _ _. exists T. split; [lra |]. split; [exact gap |].
         intros x y ? ? ?. evaluate. cases; lra.
+      + intros zz [<- | []] i0 i _ [].
       + intros zz [<- | []] _ _. unfold safe. apply Rle_trans with 8; [apply far; reflexivity | cbn; lra].
       + trivial.
       + lia.
@@ -196,21 +197,21 @@ Qed.
 (** * What cannot be left out *)
 
 (* keeps_all but for one condition. *)
-Definition without_C6 : conducts := fun k path zones s v tau l o =>
+Definition without_C6 : conducts := fun k path zones s v tau c l o =>
   motion (place o) (rate o) /\ keeps_contract k (rate o) (tau (since o)) /\
   (forall i, (since o <= i)%nat -> known k (place o) (rate o) (tau (since o)) (tau i) (view o (on o) i)) /\
   (forall z, In z (zones (on o)) -> lane z = true -> is_ahead k l (view o (on o)) z (since o) ->
     safe k z (s (tau (since o))) (v (tau (since o))) (place o (tau (since o))) (rate o (tau (since o)))) /\
   (forall i, (since o <= i)%nat -> candidates o i (on o)) /\ (1 <= since o)%nat.
 
-Definition without_A9 : conducts := fun k path zones s v tau l o =>
+Definition without_A9 : conducts := fun k path zones s v tau c l o =>
   motion (place o) (rate o) /\ keeps_contract k (rate o) (tau (since o)) /\
   (forall i, (since o <= i)%nat -> known k (place o) (rate o) (tau (since o)) (tau i) (view o (on o) i)) /\
   (forall z, In z (zones (on o)) -> lane z = true -> keeps_distance k z s v (place o) (rate o) (tau (since o))) /\
   (forall i, (since o <= i)%nat -> candidates o i (on o)) /\ (1 <= since o)%nat.
 
 (* Of C2 the braking is left. *)
-Definition without_acceleration_bound : conducts := fun k path zones s v tau l o =>
+Definition without_acceleration_bound : conducts := fun k path zones s v tau c l o =>
   motion (place o) (rate o) /\
   (forall u, brakes_at_most (rate o) (other_braking k) (tau (since o)) u) /\
   (forall i, (since o <= i)%nat -> known k (place o) (rate o) (tau (since o)) (tau i) (view o (on o) i)) /\
@@ -224,7 +225,7 @@ Lemma settled_world k t w :
   lane long_lane = true -> position_error k = 0 -> speed_error k = 0 ->
   t 1 <= 9 -> safe_gap k (w 1) 0 <= 10 - t 1 - 1 ->
   forall i, (1 <= i)%nat ->
-    judged k (world_log k (fun _ => 10) (fun _ => 0)) (world_commands k) (world_view k t w tt) long_lane 1 i.
+    judged k (world_log k (fun _ => 10) (fun _ => 0)) (world_commands k) (world_view k t w tt) long_lane (fun _ => False) 1 i.
 Proof.
   intros _ pe se t1 gap i hi. right; left. exists 1%nat. split; [lia |]. split; [reflexivity |]. split.
   - unfold is_ahead. cbn. rewrite pe. lra.
@@ -316,7 +317,8 @@ Definition with_slack (k : contract) (x : R) : contract := {|
   speed_error := speed_error k; slack := x;
   ego_max_speed := ego_max_speed k; ego_acceleration := ego_acceleration k; ego_go := ego_go k; ego_braking := ego_braking k;
   other_max_speed := other_max_speed k; other_acceleration := other_acceleration k; other_braking := other_braking k;
-  follower_reaction := follower_reaction k; follower_braking := follower_braking k |}.
+  follower_reaction := follower_reaction k; follower_braking := follower_braking k;
+  precedence_braking := precedence_braking k |}.
 
 Theorem slack_is_needed : ~ Guarantee (fun k => valid (with_slack k 1)) keeps_all.
 Proof.
@@ -332,10 +334,11 @@ Proof.
     + apply steady_keeps; lra.
     + intros i hi. apply (world_known k (fun u => 0 + 1 * u) (fun _ => 1)); [split; reflexivity | exact hi].
     + intros zz [<- | []]. discriminate.
+    + intros zz [<- | []] i0 i _ [].
     + intros zz [<- | []]. discriminate.
     + cbn. trivial.
     + cbn. lia.
-  - intros i hi. right; right. exists i. split; [lia |]. split; [| intros; lia].
+  - intros i hi. right; right; left. exists i. split; [lia |]. split; [| intros; lia].
     left. unfold stops, stops_short, stop_limit, rests. cbn -[departure rest_of].
     unfold departs_at, departure, world_log, world_commands, rest_of, shortest_period, switching, k, round. cbn.
     evaluate. lra.
@@ -347,7 +350,8 @@ Definition with_other_braking (k : contract) (x : R) : contract := {|
   speed_error := speed_error k; slack := slack k;
   ego_max_speed := ego_max_speed k; ego_acceleration := ego_acceleration k; ego_go := ego_go k; ego_braking := ego_braking k;
   other_max_speed := other_max_speed k; other_acceleration := other_acceleration k; other_braking := x;
-  follower_reaction := follower_reaction k; follower_braking := follower_braking k |}.
+  follower_reaction := follower_reaction k; follower_braking := follower_braking k;
+  precedence_braking := precedence_braking k |}.
 
 Definition valid_but_A1 (k : contract) :=
   0 < other_braking k /\ follower_braking k <= other_braking k /\ exists x, valid (with_other_braking k x).
@@ -393,10 +397,11 @@ Proof.
     + (* Where the ego leads by the band it would have to be ahead. *)
       intros zz [<- | []] _ T u lo le ? near _ _. exists T. split; [lra |]. split; [exact near |].
       intros x y ? ? ?. cbn in *. rewrite (wb x y) by lra. pose proof (forwards t w mt x). cases; lra.
+    + intros zz [<- | []] i0 i _ [].
     + intros zz [<- | []] _ [_ ahead]. exfalso. cbn in ahead. rewrite s1, t1 in ahead. lra.
     + cbn. trivial.
     + cbn. lia.
-  - intros i hi. right; right. exists 1%nat. split; [lia |]. split; [| intros; apply world_carries].
+  - intros i hi. right; right; left. exists 1%nat. split; [lia |]. split; [| intros; apply world_carries].
     right. cbn [lane wide]. left.
     assert (R : rests k (departs_at k (world_log k s v) (world_commands k) 1) O <= 2).
     { unfold rests, departs_at, departure, world_log, world_commands, rest_of, shortest_period, switching, k, round. cbn.

@@ -16,7 +16,7 @@ Hypothesis grid : on_grid k tau.
 Hypothesis obey : obeys k v tau c.
 Hypothesis true : true_log k l s v tau c.
 
-Variables (t w : R -> R) (b : nat -> bounds) (z : zone) (since : nat).
+Variables (t w : R -> R) (b : nat -> bounds) (z : zone) (claimed : nat -> Prop) (since : nat).
 Hypothesis other_moves : motion t w.
 Hypothesis keeps : keeps_contract k w (tau since).
 Hypothesis seen : forall i, (since <= i)%nat -> known k t w (tau since) (tau i) (b i).
@@ -243,12 +243,31 @@ Proof.
   - exists (tau since). split; [lra |]. split; [lra |]. apply first_gap; [exact la | split; assumption].
 Qed.
 
+Hypothesis yields : gives_way k z s tau l c t w claimed since.
+
+(* D13: the other stays out of a zone that is opened. *)
+Lemma safe_by_precedence i0 i u : (since <= i0 <= i)%nat -> opened_at k l b z claimed i0 ->
+  (forall j, (i0 <= j < i)%nat -> carries_on k l c j) -> tau i0 <= u <= tau (S i) -> ~ inside z (s u) (t u).
+Proof.
+  intros h (cl & stop & ahead) carried hu (_ & [tin _] & _).
+  destruct (truth i0 ltac:(lia)) as ((sT & vT & least_) & _). destruct (bounded i0 ltac:(lia)) as [tT wT].
+  pose proof (forwards t w other_moves (tau i0)) as w0.
+  assert (t u <= t_in z); [| lra].
+  apply (yields i0 i h cl) with (u := u); auto.
+  - apply Rle_trans with (2 := stop). unfold rest_of. cbn.
+    assert (0 < precedence_braking k) by (destruct ok; lra).
+    assert (w (tau i0) * w (tau i0) / (precedence_braking k + precedence_braking k)
+            <= w_most (b i0) * w_most (b i0) / (precedence_braking k + precedence_braking k)); [| lra].
+    apply Rmult_le_compat_r; [left; apply Rinv_0_lt_compat; lra | apply Rmult_le_compat; lra].
+  - intros la. specialize (ahead la). lra.
+Qed.
+
 (* While a zone is judged at a call, ego and other are not inside of it until the next one. *)
-Lemma judged_safe i u : (since <= i)%nat -> judged k l c b z since i -> tau i <= u <= tau (S i) ->
+Lemma judged_safe i u : (since <= i)%nat -> judged k l c b z claimed since i -> tau i <= u <= tau (S i) ->
   ~ inside z (s u) (t u).
 Proof.
   intros h j [lo hi]. destruct (truth i ltac:(lia)) as ((sT & vT & least_) & _). destruct (bounded i h) as [tT wT].
-  destruct j as [[past | past] | [(i0 & [r1 r2] & se) | (i0 & [r1 r2] & ver & carried)]].
+  destruct j as [[past | past] | [(i0 & [r1 r2] & se) | [(i0 & [r1 r2] & ver & carried) | (i0 & [r1 r2] & open & carried)]]].
   - intros ((_ & ?) & _). pose proof (advances s v (tau i) u ego_moves lo). lra.
   - intros (_ & (_ & ?) & _). pose proof (advances t w (tau i) u other_moves lo). lra.
   - destruct (settles_safely i0 r1 se) as (x & [x1 x2] & inn & gap).
@@ -261,6 +280,8 @@ Proof.
     + apply (safe_behind i0 i (conj r1 r2) carried u st hu).
     + apply (safe_by_entering i0 i u (conj r1 r2) carried la en hu).
     + apply (safe_by_passing i0 i (conj r1 r2) carried u other_way hu).
+  - apply (safe_by_precedence i0 i u (conj r1 r2) open carried).
+    split; [apply Rle_trans with (tau i); [apply in_order; lia | lra] | lra].
 Qed.
 
 (* Every moment is between two calls. *)
@@ -277,8 +298,9 @@ Theorem verified_plans_keep_apart : Theorem1.
 Proof.
   intros k path zones occupied s v tau c l others (ok & cov & em & grid & obey & true & keeps & judged_all) o u oo lo occ.
   destruct (cov (on o) (s u) (place o u) occ) as (z & zin & ins).
-  destruct (keeps o oo) as [om c2 c3 c6 a9 a11 st].
+  destruct (keeps o oo) as [om c2 c3 c6 c7 a9 a11 st].
   destruct (between_calls k tau ok grid (since o) st u lo) as (i & hi & hu).
-  apply (judged_safe k s v tau c l) with (t := place o) (w := rate o) (b := view o (on o)) (z := z) (since := since o)
+  apply (judged_safe k s v tau c l) with (t := place o) (w := rate o) (b := view o (on o)) (z := z)
+    (claimed := claims o (on o) z) (since := since o)
     (i := i) (u := u); auto.
 Qed.

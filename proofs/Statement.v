@@ -179,7 +179,7 @@ Definition in_force (k : contract) (l : log) (c : nat -> R) (first : nat) (check
   exists i0, (first <= i0 <= i)%nat /\ checked i0 /\ forall j, (i0 <= j < i)%nat -> carries_on k l c j.
 
 Section ZoneOfAnOther.
-Variables (k : contract) (l : log) (c : nat -> R) (b : nat -> bounds) (z : zone) (since : nat).
+Variables (k : contract) (l : log) (c : nat -> R) (b : nat -> bounds) (z : zone) (claimed : nat -> Prop) (since : nat).
 
 (* The plan of call i is verified against the zone: it was new then, or the other or its path was (D16). *)
 Definition verified_at (i : nat) := verified k z (ego_at l i) (b i) (departs_at k l c i) (goes l i).
@@ -202,8 +202,15 @@ Definition settles (i : nat) :=
    i = since).
 Definition settled (i : nat) := exists i0, (since <= i0 <= i)%nat /\ settles i0.
 
-(* At call i nothing is to be feared of the zone: it is over or settled, or the plan in force was verified against it. *)
-Definition judged (i : nat) := over i \/ settled i \/ in_force k l c since verified_at i.
+(* D13 Opened at call i: the ego has precedence, and the other can still stop. *)
+Definition opened_at (i : nat) := claimed i /\
+  rest_of {| distance := t_most (b i); speed := w_most (b i) |} (precedence_braking k) <= t_in z /\
+  (lane z = true -> lead_from z < own_least (ego_at l i) - t_in z).
+
+(* At call i nothing is to be feared of the zone: it is over or settled, the plan in force was verified against it, or it
+   counts on the ego's precedence. *)
+Definition judged (i : nat) :=
+  over i \/ settled i \/ in_force k l c since verified_at i \/ in_force k l c since opened_at i.
 End ZoneOfAnOther.
 
 (** * The theorem *)
@@ -215,19 +222,32 @@ Record other (path : Type) := {
   on : path;
   since : nat;
   candidates : nat -> path -> Prop;
-  view : path -> nat -> bounds
+  view : path -> nat -> bounds;
+  claims : path -> zone -> nat -> Prop   (* at a call the ego has precedence over it in the zone *)
 }.
 Arguments place {path}. Arguments rate {path}. Arguments on {path}. Arguments since {path}.
-Arguments candidates {path}. Arguments view {path}.
+Arguments candidates {path}. Arguments view {path}. Arguments claims {path}.
 
-(* C2, C3, C6, A9, A11 for an other. *)
-Record keeps_all (k : contract) (path : Type) (zones : path -> list zone) (s v : R -> R) (tau : nat -> R) (l : log)
-    (o : other path) : Prop := {
+(* C7: an other that can still stop before a zone in which the ego has precedence stays out of it while the plan in force
+   counts on it. *)
+Definition gives_way (k : contract) (z : zone) (s : R -> R) (tau : nat -> R) (l : log) (c : nat -> R) (t w : R -> R)
+    (claimed : nat -> Prop) (since : nat) :=
+  forall i0 i, (since <= i0 <= i)%nat -> claimed i0 ->
+    rest_of {| distance := t (tau i0); speed := w (tau i0) |} (precedence_braking k) <= t_in z ->
+    (lane z = true -> lead_from z < s (tau i0) - t_in z) ->
+    (forall j, (i0 <= j < i)%nat -> carries_on k l c j) ->
+    forall u, tau i0 <= u <= tau (S i) -> t u <= t_in z.
+
+(* C2, C3, C6, C7, A9, A11 for an other. *)
+Record keeps_all (k : contract) (path : Type) (zones : path -> list zone) (s v : R -> R) (tau c : nat -> R)
+    (l : log) (o : other path) : Prop := {
   moves_forwards : motion (place o) (rate o);
   C2 : keeps_contract k (rate o) (tau (since o));
   C3 : forall i, (since o <= i)%nat -> known k (place o) (rate o) (tau (since o)) (tau i) (view o (on o) i);
   C6 : forall z, In z (zones (on o)) -> lane z = true ->
     keeps_distance k z s v (place o) (rate o) (tau (since o));
+  C7 : forall z, In z (zones (on o)) ->
+    gives_way k z s tau l c (place o) (rate o) (claims o (on o) z) (since o);
   A9 : forall z, In z (zones (on o)) -> lane z = true -> is_ahead k l (view o (on o)) z (since o) ->
     safe k z (s (tau (since o))) (v (tau (since o))) (place o (tau (since o))) (rate o (tau (since o)));
   A11 : forall i, (since o <= i)%nat -> candidates o i (on o);
@@ -238,7 +258,7 @@ Record keeps_all (k : contract) (path : Type) (zones : path -> list zone) (s v :
    the contract, and a shield that judges every zone of every candidate path of every other at every call.
    What is demanded of contract and others is an argument, so that Controls.v can leave something out. *)
 Definition conducts := forall (k : contract) (path : Type),
-  (path -> list zone) -> (R -> R) -> (R -> R) -> (nat -> R) -> log -> other path -> Prop.
+  (path -> list zone) -> (R -> R) -> (R -> R) -> (nat -> R) -> (nat -> R) -> log -> other path -> Prop.
 
 Definition Conditions (contracts : contract -> Prop) (conduct : conducts)
     (k : contract) (path : Type) (zones : path -> list zone) (occupied : path -> R -> R -> Prop)
@@ -246,9 +266,9 @@ Definition Conditions (contracts : contract -> Prop) (conduct : conducts)
   contracts k /\
   (forall p, cover (zones p) (occupied p)) /\
   motion s v /\ on_grid k tau /\ obeys k v tau c /\ true_log k l s v tau c /\
-  (forall o, others o -> conduct k path zones s v tau l o) /\
+  (forall o, others o -> conduct k path zones s v tau c l o) /\
   (forall o i p z, others o -> (since o <= i)%nat -> candidates o i p -> In z (zones p) ->
-    judged k l c (view o p) z (since o) i).
+    judged k l c (view o p) z (claims o p z) (since o) i).
 
 (* Then the ego never overlaps an other, at any time from the first call at which it is seen. *)
 Definition Guarantee (contracts : contract -> Prop) (conduct : conducts) :=

@@ -52,10 +52,7 @@ pub fn shipped() -> String {
         "until (from : reach) (target acceleration cap : R) : R * R",
         from.until(target, a, cap),
     );
-    file.define(
-        "unlimited (k : contract) : R",
-        margin::unlimited::<Term>(k),
-    );
+    file.define("unlimited (k : contract) : R", margin::unlimited::<Term>(k));
     let [sensed, least, most, command] =
         ["sensed", "previous_least", "previous_most", "command"].map(named);
     file.define(
@@ -109,7 +106,12 @@ pub fn shipped() -> String {
 /// that occur nowhere else, by which the printer knows them.
 fn timed_contract() -> Contract {
     let builder = any_contract().to_builder();
-    unchecked(builder.period(0.731_058_6).latency(0.119_202_9).jitter(0.017_986_2))
+    unchecked(
+        builder
+            .period(0.731_058_6)
+            .latency(0.119_202_9)
+            .jitter(0.017_986_2),
+    )
 }
 
 fn named(name: &'static str) -> Term {
@@ -262,7 +264,10 @@ impl Writer<'_> {
         }
         // Operations of one rank bind to the left.
         let apply = |word: &str, parts: &[Term]| {
-            let parts: Vec<String> = parts.iter().map(|part| self.at_least(*part, Atom)).collect();
+            let parts: Vec<String> = parts
+                .iter()
+                .map(|part| self.at_least(*part, Atom))
+                .collect();
             (format!("{word} {}", parts.join(" ")), Application)
         };
         let operate = |word: &str, [a, b]: [Term; 2], [left, right]: [Binding; 2]| {
@@ -297,7 +302,10 @@ impl Writer<'_> {
 /// A number of the contract, a part of the reach `from`, or a name.
 fn symbol_said(name: &str) -> (String, Binding) {
     if name.contains('.') || is_of_contract(name) {
-        (format!("{} k", name.replace('.', "_")), Binding::Application)
+        (
+            format!("{} k", name.replace('.', "_")),
+            Binding::Application,
+        )
     } else if name.contains(' ') {
         (name.to_owned(), Binding::Application)
     } else {

@@ -59,7 +59,10 @@ impl Lemmas {
             }
             [form, ..] => {
                 let mend = "the form to write before FILE is rocq";
-                return Err(Failure::input(format!("no such form: {}", form.display()), mend));
+                return Err(Failure::input(
+                    format!("no such form: {}", form.display()),
+                    mend,
+                ));
             }
         }
         let solver = Solver::find(self.solver.as_deref()).map_err(unusable)?;
