@@ -154,7 +154,8 @@ Lemma departure_brakes_first k sensed pl pm a : valid k -> - ego_braking k <= a 
   rest_of (braking (departure k sensed pl pm a)) (ego_braking k) <= rest k (most (departure k sensed pl pm a)) 0.
 Proof.
   intros ok ab. rewrite rest_is, departure_is. cbn zeta. cbn [braking most].
-  set (r := at_most (at_most _ _ _) a _).
+  set (r := at_most (at_most (start (sensed + speed_error k)) (Rmax pm a) (switching k)) a
+    (shortest_period k - switching k)).
   rewrite at_most_zero by apply at_most_speed_nonneg.
   assert (r0 : 0 <= speed r) by apply at_most_speed_nonneg.
   assert (sw : 0 <= switching k) by (unfold switching; destruct ok; lra).
