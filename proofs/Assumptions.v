@@ -1,7 +1,14 @@
 (* What every theorem rests on: check.sh compares it with axioms.txt. *)
-Require Import Shield Merge Controls.
+Require Import Shield Merge Pair Choice Limit Controls.
 Print Assumptions verified_plans_keep_apart.
 Print Assumptions at_most_one_comes_in_ahead.
+Print Assumptions shielded_vehicles_keep_apart.
+Print Assumptions chosen_is_verified.
+Print Assumptions braking_meets_all.
+Print Assumptions spare_meets.
+Print Assumptions may_go.
+Print Assumptions keeps_limit.
+Print Assumptions reduced_go_may_be_slow.
 Print Assumptions conditions_can_be_met.
 Print Assumptions C6_is_needed.
 Print Assumptions A9_is_needed.

@@ -106,15 +106,15 @@ Proof.
   apply Rmult_le_pos; [apply Rle_0_sqr | left; apply Rinv_0_lt_compat; destruct ok; lra].
 Qed.
 
-Lemma safe_by_limit u : stops k d n (stop_limit k z o) -> T <= u <= E -> ~ inside z (s u) (t u).
+Lemma rests_before u : stops k d n (stop_limit k z o) -> T <= u <= E -> s u < s_in z.
 Proof.
-  intros st h [[? _] _]. destruct where_ as (sT & _). unfold stops, stops_short, stop_limit in st.
+  intros st h. destruct where_ as (sT & _). unfold stops, stops_short, stop_limit in st.
   pose proof (rest_place u h). assert (0 < slack k) by (destruct ok; lra). lra.
 Qed.
 
-Lemma safe_behind u : stops k d n (behind k z o (b i0)) -> T <= u <= E -> ~ inside z (s u) (t u).
+Lemma rests_behind u : stops k d n (behind k z o (b i0)) -> T <= u <= E -> s u - t u <= lead_from z.
 Proof.
-  intros st h (_ & _ & [? _]). destruct where_ as (sT & _). destruct what as [tT wT].
+  intros st h. destruct where_ as (sT & _). destruct what as [tT wT].
   unfold stops, stops_short, behind in st.
   assert (sl : 0 < slack k) by (destruct ok; lra).
   pose proof (rest_place T ltac:(lra)) as R0.
@@ -219,13 +219,13 @@ Proof.
   apply (settled_for_ever x u la); auto. apply Rle_trans with (tau i0); [apply in_order; lia | lra].
 Qed.
 
-Hypothesis first_gap : lane z = Datatypes.true -> is_ahead k l b z since ->
-  safe k z (s (tau since)) (v (tau since)) (t (tau since)) (w (tau since)).
-
-Lemma settles_safely i : (since <= i)%nat -> settles k l c b z since i ->
+Lemma settles_safely i :
+  (lane z = Datatypes.true -> is_ahead k l b z since ->
+     safe k z (s (tau since)) (v (tau since)) (t (tau since)) (w (tau since))) ->
+  (since <= i)%nat -> settles k l c b z since i ->
   exists x, tau since <= x <= tau i /\ s_in z <= s x /\ safe k z (s x) (v x) (t x) (w x).
 Proof.
-  intros h (la & [inn half] & why).
+  intros first_gap h (la & [inn half] & why).
   destruct (truth i ltac:(lia)) as ((sT & vT & least_) & _). destruct (bounded i h) as [tT wT].
   assert (lo : tau since <= tau i) by (apply in_order; lia).
   destruct why as [(i' & -> & i0 & [r1 r2] & [_ en] & carried) | [gap | ->]].
@@ -243,6 +243,37 @@ Proof.
   - exists (tau since). split; [lra |]. split; [lra |]. apply first_gap; [exact la | split; assumption].
 Qed.
 
+(* Who is no follower's leader (C6) is before the lane, or behind, or one of both has left; or it leads, or has led. *)
+Lemma judged_outcome i u : lane z = Datatypes.true -> s (tau since) < s_in z -> (forall j, ~ claimed j) ->
+  (since <= i)%nat -> judged k l c b z claimed since i -> tau i <= u <= tau (S i) ->
+  s u < s_in z \/ s u - t u <= lead_from z \/ s_out z <= s u \/ t_out z <= t u \/
+  exists x, tau since <= x <= u /\ s_in z <= s x /\ lead_to z <= s x - t x.
+Proof.
+  intros la before unclaimed h j [lo hi].
+  destruct (truth i ltac:(lia)) as ((sT & vT & least_) & _). destruct (bounded i h) as [tT wT].
+  assert (gap_open : forall x, safe k z (s x) (v x) (t x) (w x) -> lead_to z <= s x - t x).
+  { intros x sf. unfold safe in sf. rewrite safe_gap_is in sf.
+    pose proof (Rmax_r (rest_of (rush k (w x) (follower_reaction k)) (follower_braking k) - rest_of (start (v x)) (hardest k)) 0).
+    lra. }
+  destruct j as [[past | past] | [(i0 & [r1 r2] & se) | [(i0 & [r1 r2] & ver & carried) | (i0 & _ & [cl _] & _)]]].
+  - right; right; left. pose proof (advances s v (tau i) u ego_moves lo). lra.
+  - do 3 right; left. pose proof (advances t w (tau i) u other_moves lo). lra.
+  - do 4 right. destruct (settles_safely i0) as (x & [x1 x2] & inn & gap); auto.
+    + intros _ [least_in _]. exfalso. destruct (truth since ltac:(lia)) as ((_ & _ & ?) & _). lra.
+    + assert (tau i0 <= tau i) by (apply in_order; lia). exists x. split; [lra |]. split; [exact inn | apply gap_open, gap].
+  - assert (hu : tau i0 <= u <= tau (S i)) by (split; [apply Rle_trans with (tau i); [apply in_order; lia | lra] | lra]).
+    destruct ver as [st | other_way]; [left; apply (rests_before i0 i (conj r1 r2) carried u st hu) |].
+    rewrite la in other_way. destruct other_way as [st | en].
+    + right; left. apply (rests_behind i0 i (conj r1 r2) carried u st hu).
+    + destruct (Rlt_le_dec (s u) (s_in z)) as [out | inn]; [left; exact out |]. do 4 right.
+      destruct (enters_safely i0 i (conj r1 r2) carried u en hu inn) as (x & [x1 x2] & ? & gap).
+      exists x. split; [| split; [assumption | apply gap_open, gap]].
+      split; [apply Rle_trans with (tau i0); [apply in_order; lia | lra] | lra].
+  - destruct (unclaimed i0 cl).
+Qed.
+
+Hypothesis first_gap : lane z = Datatypes.true -> is_ahead k l b z since ->
+  safe k z (s (tau since)) (v (tau since)) (t (tau since)) (w (tau since)).
 Hypothesis yields : gives_way k z s tau l c t w claimed since.
 
 (* D13: the other stays out of a zone that is opened. *)
@@ -270,14 +301,15 @@ Proof.
   destruct j as [[past | past] | [(i0 & [r1 r2] & se) | [(i0 & [r1 r2] & ver & carried) | (i0 & [r1 r2] & open & carried)]]].
   - intros ((_ & ?) & _). pose proof (advances s v (tau i) u ego_moves lo). lra.
   - intros (_ & (_ & ?) & _). pose proof (advances t w (tau i) u other_moves lo). lra.
-  - destruct (settles_safely i0 r1 se) as (x & [x1 x2] & inn & gap).
+  - destruct (settles_safely i0 first_gap r1 se) as (x & [x1 x2] & inn & gap).
     assert (tau i0 <= tau i) by (apply in_order; lia).
     apply (settled_for_ever x u); auto; [apply se | lra].
   - assert (hu : tau i0 <= u <= tau (S i)) by (split; [apply Rle_trans with (tau i); [apply in_order; lia | lra] | lra]).
-    destruct ver as [st | other_way]; [apply (safe_by_limit i0 i (conj r1 r2) carried u st hu) |].
+    destruct ver as [st | other_way].
+    { intros [[? _] _]. pose proof (rests_before i0 i (conj r1 r2) carried u st hu). lra. }
     assert (which : lane z = Datatypes.true \/ lane z = false) by (destruct (lane z); auto).
     destruct which as [la | la]; rewrite la in other_way; [destruct other_way as [st | en] |].
-    + apply (safe_behind i0 i (conj r1 r2) carried u st hu).
+    + intros (_ & _ & [? _]). pose proof (rests_behind i0 i (conj r1 r2) carried u st hu). lra.
     + apply (safe_by_entering i0 i u (conj r1 r2) carried la en hu).
     + apply (safe_by_passing i0 i (conj r1 r2) carried u other_way hu).
   - apply (safe_by_precedence i0 i u (conj r1 r2) open carried).

@@ -300,3 +300,22 @@ Definition comes_in_ahead (k : contract) (z : zone) (s v t w : R -> R) (x : R) :
 Definition Theorem2 := forall k z y s v t w x1 x2,
   valid k -> mirrored z y -> corner_in_band z -> motion s v -> motion t w ->
   comes_in_ahead k z s v t w x1 -> ~ comes_in_ahead k y t w s v x2.
+
+(* A shielded vehicle as another one sees it: it keeps its own contract, and judges the zone at every call. *)
+Record shielded (k : contract) (z : zone) (s v t w : R -> R) (from : R) : Prop := {
+  exists_shield : exists (tau c : nat -> R) (l : log) (b : nat -> bounds) (since : nat),
+    from = tau since /\ (1 <= since)%nat /\
+    on_grid k tau /\ obeys k v tau c /\ true_log k l s v tau c /\
+    keeps_contract k w (tau since) /\ (forall j, (since <= j)%nat -> known k t w (tau since) (tau j) (b j)) /\
+    forall i, (since <= i)%nat -> judged k l c b z (fun _ => False) since i
+}.
+
+(* C6 is a consequence: two shielded vehicles that watch each other since before either was in the lane never are in it
+   together, whoever comes first. Neither C6 nor A9 is assumed; nor is precedence used. *)
+Definition Theorem2_together := forall k z y s v t w from from',
+  valid k -> lane z = true -> lane y = true -> mirrored z y ->
+  lead_from z < s_in z - t_in z < lead_to z ->
+  motion s v -> motion t w ->
+  shielded k z s v t w from -> shielded k y t w s v from' ->
+  s (Rmax from from') < s_in z -> t (Rmax from from') < t_in z ->
+  forall u, Rmax from from' <= u -> ~ inside z (s u) (t u).
