@@ -51,19 +51,9 @@ impl Lemmas {
             .filter(|lemma| self.only.as_deref().is_none_or(|only| only == lemma.id))
             .collect();
         match self.write.as_slice() {
-            [] => {}
+            [form, file] => return self.print(form, file),
             [folder] => write(folder, &chosen)?,
-            [_, file] if self.write[0] == Path::new("rocq") => {
-                output::write(file, |file| file.write_all(shipped().as_bytes()))?;
-                return Ok(());
-            }
-            [form, ..] => {
-                let mend = "the form to write before FILE is rocq";
-                return Err(Failure::input(
-                    format!("no such form: {}", form.display()),
-                    mend,
-                ));
-            }
+            _ => {}
         }
         let solver = Solver::find(self.solver.as_deref()).map_err(unusable)?;
         let rows = self.settle(&solver, chosen)?;
@@ -79,6 +69,26 @@ impl Lemmas {
         } else {
             Err(Failure::Check(format!("not proved: {}", open.join(", "))))
         }
+    }
+
+    /// Writes what another prover is asked about.
+    fn print(&self, form: &Path, file: &Path) -> Result<(), Failure> {
+        if form != Path::new("rocq") {
+            let form = form.display();
+            return Err(Failure::Usage(format!(
+                "--write {form} FILE: the form is rocq"
+            )));
+        }
+        let options = [
+            ("--only", self.only.is_some()),
+            ("--solver", self.solver.is_some()),
+            ("--json", self.json),
+        ];
+        if let Some((option, _)) = options.into_iter().find(|(_, given)| *given) {
+            return Err(Failure::ignored(option, "--write rocq"));
+        }
+        output::write(file, |file| file.write_all(shipped().as_bytes()))?;
+        Ok(())
     }
 
     fn settle(&self, solver: &Solver, lemmas: Vec<Lemma>) -> Result<Vec<SettledLemma>, Failure> {
