@@ -133,10 +133,10 @@ Definition perhaps (x : R) (m e count : nat) :=
 
 (* Lemma 5: S of one shield exceeds L of the other by 1 at most without jitter, by 2 at most with it. *)
 Theorem surely_at_most_perhaps x m a S_Q sure e L_P :
-  enough m -> from <= p 0%nat -> q 0%nat <= p 0%nat ->
+  enough m -> from <= p 0%nat ->
   surely x a S_Q sure -> perhaps x m e L_P -> (S_Q <= L_P + (m - 1))%nat.
 Proof.
-  intros en h started (sure_says & stretch & upto & last) (end_ & now1 & now2).
+  intros en h (sure_says & stretch & upto & last) (end_ & now1 & now2).
   destruct (Nat.eq_dec S_Q 0) as [? | nz]; [lia |]. specialize (last nz).
   assert (fromp : forall i, from <= p i).
   { intros i. apply Rle_trans with (p 0%nat); [exact h | apply (calls_ordered k p ok grid_p); lia]. }
@@ -154,7 +154,7 @@ Proof.
         assert (r < v (q a)); [| lra].
         apply moves_throughout with i (m - 1)%nat; auto; [intros j hj; apply fast; lia | rewrite ie; lra].
       + destruct (seen_to_move i m en (fromp i)) as (j & hj & moving).
-        * apply Rle_trans with (p 0%nat); [exact started | apply order_p; lia].
+        * pose proof (order_q O a ltac:(lia)). lra.
         * intros j hj. apply fast. lia.
         * rewrite ie in hj.
           assert (a <= j)%nat.
