@@ -1,5 +1,5 @@
 (* What every theorem rests on: check.sh compares it with axioms.txt. *)
-Require Import Shield Merge Pair Choice Limit Controls.
+Require Import Shield Merge Pair Choice Limit Precedence Turns Controls.
 Print Assumptions verified_plans_keep_apart.
 Print Assumptions at_most_one_comes_in_ahead.
 Print Assumptions shielded_vehicles_keep_apart.
@@ -9,6 +9,12 @@ Print Assumptions spare_meets.
 Print Assumptions may_go.
 Print Assumptions keeps_limit.
 Print Assumptions reduced_go_may_be_slow.
+Print Assumptions arrivals_exclude.
+Print Assumptions arrivals_exclude_equals.
+Print Assumptions surely_at_most_perhaps.
+Print Assumptions never_two_turns.
+Print Assumptions never_both.
+Print Assumptions right_of_way_agrees.
 Print Assumptions conditions_can_be_met.
 Print Assumptions C6_is_needed.
 Print Assumptions A9_is_needed.

@@ -1,4 +1,5 @@
-(* Theorem 3, two turns: with a right of way, two shields never hold turns at one time. *)
+(* Theorem 3: two shields never both claim, by arrival or by turns. What a shield counts, and how it takes and drops turns, is
+   transcribed from precedence.rs and waiting.rs. *)
 Require Import Reals Lra Lia Psatz Arith.
 Require Import Contract Shipped Motion Reach Statement Ego Precedence.
 
@@ -30,15 +31,24 @@ Record counts (g : nat -> R) (sure ended : nat -> Prop) (S_ : nat -> nat) (L : n
     (l <= i)%nat /\ ended (i - l)%nat /\ forall j, (i - l <= j <= i)%nat -> L j = Some (j - (i - l))%nat
 }.
 
-(* How a shield takes and drops turns. [owns n]: by its order the turn is its own. *)
-Record takes_turns (S_ : nat -> nat) (L : nat -> option nat) (owns : nat -> Prop) (turn : nat -> option nat) : Prop := {
+(* How a shield takes and drops turns. [owns i n]: by its order at call i turn n is its own. *)
+Record takes_turns (S_ : nat -> nat) (L : nat -> option nat) (owns : nat -> nat -> Prop) (turn : nat -> option nat) : Prop := {
   takes : forall i n, turn i = Some n ->
     (1 <= i /\ turn (i - 1) = Some n)%nat \/
-    (S_ i = begins n + G /\ owns n /\ exists l, L i = Some l /\ begins n <= l < begins (n + 1))%nat;
+    (S_ i = begins n + G /\ owns i n /\ exists l, L i = Some l /\ begins n <= l < begins (n + 1))%nat;
   drops_unknown : forall i, L i = None -> turn i = None;
   drops_at : forall i n, L i = Some (begins n) -> turn i = None;
   drops_late : forall i x n, L i = Some (x * T)%nat -> (begins n <= x * T)%nat -> (S_ i < begins n)%nat -> turn i = None
 }.
+
+(* Lemma 6: two shields do not both own a turn within one stretch of rest, as the second one counts it. *)
+Definition agree (p q : nat -> R) (L_q : nat -> option nat) (owns_p owns_q : nat -> nat -> Prop) :=
+  forall i j n l, (p i <= q j)%R -> L_q j = Some l -> (q (j - l)%nat <= p i)%R -> owns_p i n -> ~ owns_q j n.
+
+(* Where one of both has the right of way, they agree: it settles whose turn it is. *)
+Lemma right_of_way_agrees p q L_q (gives_way : bool) :
+  agree p q L_q (fun _ n => Nat.even n = gives_way) (fun _ n => Nat.even n = negb gives_way).
+Proof. intros i j n l _ _ _ a b. rewrite a in b. destruct gives_way; discriminate. Qed.
 
 Lemma begins_grows n n' : (n <= n' -> begins n <= begins n')%nat.
 Proof. intros h. unfold begins. apply Nat.mul_le_mono_r, Nat.pow_le_mono_r; lia. Qed.
@@ -49,7 +59,7 @@ Proof. replace T with (begins 0) by (unfold begins; simpl; lia). apply begins_gr
 (* Every turn that is held was taken at some call. *)
 Lemma taken S_ L owns turn i n : takes_turns S_ L owns turn -> turn i = Some n ->
   exists i0, (i0 <= i)%nat /\ (forall j, (i0 <= j <= i)%nat -> turn j = Some n) /\
-    (S_ i0 = begins n + G)%nat /\ owns n /\ exists l, L i0 = Some l /\ (begins n <= l < begins (n + 1))%nat.
+    (S_ i0 = begins n + G)%nat /\ owns i0 n /\ exists l, L i0 = Some l /\ (begins n <= l < begins (n + 1))%nat.
 Proof.
   intros rules. induction i as [| i IH]; intros has.
   - destruct (takes _ _ _ _ rules 0%nat n has) as [[? _] | [a b]]; [lia |].
@@ -108,10 +118,10 @@ End Two.
 Lemma no_second_turn p q sure_p ended_p sure_q ended_q S_p S_q L_p L_q owns_p owns_q turn_p i0 i1 j0 n n' :
   counts p sure_p ended_p S_p L_p -> counts q sure_q ended_q S_q L_q ->
   takes_turns S_p L_p owns_p turn_p ->
-  (forall a, owns_p a -> ~ owns_q a) ->
+  agree p q L_q owns_p owns_q ->
   (i0 <= i1)%nat -> (forall i, (i0 <= i <= i1)%nat -> turn_p i = Some n) ->
-  S_p i0 = (begins n + G)%nat -> owns_p n -> (exists l, L_p i0 = Some l /\ (begins n <= l < begins (n + 1))%nat) ->
-  S_q j0 = (begins n' + G)%nat -> owns_q n' -> (exists l, L_q j0 = Some l /\ (begins n' <= l < begins (n' + 1))%nat) ->
+  S_p i0 = (begins n + G)%nat -> owns_p i0 n -> (exists l, L_p i0 = Some l /\ (begins n <= l < begins (n + 1))%nat) ->
+  S_q j0 = (begins n' + G)%nat -> owns_q j0 n' -> (exists l, L_q j0 = Some l /\ (begins n' <= l < begins (n' + 1))%nat) ->
   (p i0 <= q j0)%R -> (p i1 <= q j0 < p (i1 + 1)%nat)%R -> False.
 Proof.
   intros P Q rules order le held sP oP (l0 & L0 & l0a & l0b) sQ oQ (lQ & LQ & lQa & lQb) first now.
@@ -132,13 +142,13 @@ Proof.
   assert (nn : (n' <= n)%nat).
   { destruct (le_lt_dec n' n) as [? | lt]; [assumption | exfalso].
     pose proof (begins_grows (n + 1) n' ltac:(lia)). lia. }
-  destruct (Nat.eq_dec n n') as [-> | ne]; [exact (order n' oP oQ) |].
-  pose proof (begins_grows (n' + 1) n ltac:(lia)) as later.
   (* Q's count ended after P took its turn. *)
   destruct (L_counts _ _ _ _ _ Q j0 lQ LQ) as (lQj & end_ & countedQ).
   set (e := (j0 - lQ)%nat) in *.
   assert (late : (p i0 < q e)%R).
   { destruct (Rlt_le_dec (p i0) (q e)) as [? | early]; [assumption | exfalso].
+    destruct (Nat.eq_dec n n') as [-> | ne]; [exact (order i0 j0 n' lQ first LQ early oP oQ) |].
+    pose proof (begins_grows (n' + 1) n ltac:(lia)) as later.
     assert (q j0 < q (j0 + 1)%nat)%R.
     { pose proof (spacing k q gq j0 1) as [A _]. simpl INR in A. lra. }
     destruct (last_call q e j0 (p i0)) as (j1 & hj1 & now1); [unfold e; lia | lra |].
@@ -214,11 +224,11 @@ Qed.
 Theorem never_two_turns p q sure_p ended_p sure_q ended_q S_p S_q L_p L_q owns_p owns_q turn_p turn_q i j n n' x :
   counts p sure_p ended_p S_p L_p -> counts q sure_q ended_q S_q L_q ->
   takes_turns S_p L_p owns_p turn_p -> takes_turns S_q L_q owns_q turn_q ->
-  (forall a, owns_p a -> ~ owns_q a) ->
+  agree p q L_q owns_p owns_q -> agree q p L_p owns_q owns_p ->
   (p i <= x < p (i + 1)%nat)%R -> (q j <= x < q (j + 1)%nat)%R ->
   turn_p i = Some n -> turn_q j <> Some n'.
 Proof.
-  intros P Q rp rq order now_p now_q tp tq.
+  intros P Q rp rq order order' now_p now_q tp tq.
   destruct (taken S_p L_p owns_p turn_p i n rp tp) as (i0 & lei & held_p & sp & op & lp).
   destruct (taken S_q L_q owns_q turn_q j n' rq tq) as (j0 & lej & held_q & sq & oq & lq).
   pose proof (calls_ordered k p ok (grid_of _ _ _ _ _ P) i0 i lei).
@@ -229,7 +239,7 @@ Proof.
     intros a ha. apply held_p. lia.
   - destruct (last_call q j0 j (p i0) lej) as (j1 & h1 & now); [lra |].
     apply (no_second_turn q p sure_q ended_q sure_p ended_p S_q S_p L_q L_p owns_q owns_p turn_q j0 j1 i0 n' n); auto;
-      [intros a b c; exact (order a c b) | lia | | lra].
+      [lia | | lra].
     intros a ha. apply held_q. lia.
 Qed.
 
@@ -273,23 +283,22 @@ Proof.
     apply (not_in_turns _ _ rules _ C). apply (claimed_before L_p claim _ i1 rules); [lia | exact c1].
 Qed.
 
-(* Theorem 3, never both, where one of both has the right of way: [owns] is settled then, and Lemma 1 excludes that both claim
-   by arrival. *)
+(* Theorem 3, never both. Lemma 1 excludes that both claim by arrival. *)
 Theorem never_both p q sure_p ended_p sure_q ended_q S_p S_q L_p L_q owns_p owns_q turn_p turn_q claim_p claim_q :
   counts p sure_p ended_p S_p L_p -> counts q sure_q ended_q S_q L_q ->
   takes_turns S_p L_p owns_p turn_p -> takes_turns S_q L_q owns_q turn_q ->
   claims_by_arrival L_p claim_p -> claims_by_arrival L_q claim_q ->
-  (forall a, owns_p a -> ~ owns_q a) -> (forall i j, claim_p i -> ~ claim_q j) ->
+  agree p q L_q owns_p owns_q -> agree q p L_p owns_q owns_p -> (forall i j, claim_p i -> ~ claim_q j) ->
   forall x i j, (p i <= x < p (i + 1)%nat)%R -> (q j <= x < q (j + 1)%nat)%R ->
   claim_p i \/ turn_p i <> None -> ~ (claim_q j \/ turn_q j <> None).
 Proof.
-  intros P Q rp rq cp cq order arrivals x i j now_p now_q [a | a] [b | b].
+  intros P Q rp rq cp cq order order' arrivals x i j now_p now_q [a | a] [b | b].
   - exact (arrivals i j a b).
   - destruct (turn_q j) as [n |] eqn:e; [| congruence].
     exact (no_claim_in_a_turn p q _ _ _ _ _ _ _ _ _ _ _ i j n x P Q rq cp now_p now_q e a).
   - destruct (turn_p i) as [n |] eqn:e; [| congruence].
     exact (no_claim_in_a_turn q p _ _ _ _ _ _ _ _ _ _ _ j i n x Q P rp cq now_q now_p e b).
   - destruct (turn_p i) as [n |] eqn:e; [| congruence]. destruct (turn_q j) as [n' |] eqn:e'; [| congruence].
-    exact (never_two_turns p q _ _ _ _ _ _ _ _ _ _ _ _ i j n n' x P Q rp rq order now_p now_q e e').
+    exact (never_two_turns p q _ _ _ _ _ _ _ _ _ _ _ _ i j n n' x P Q rp rq order order' now_p now_q e e').
 Qed.
 End Turns.
