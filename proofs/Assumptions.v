@@ -3,6 +3,7 @@ Require Import Shield Merge Pair Choice Limit Precedence Turns Controls.
 Print Assumptions verified_plans_keep_apart.
 Print Assumptions at_most_one_comes_in_ahead.
 Print Assumptions shielded_vehicles_keep_apart.
+Print Assumptions two_shielded_vehicles.
 Print Assumptions chosen_is_verified.
 Print Assumptions braking_meets_all.
 Print Assumptions spare_meets.

@@ -118,3 +118,19 @@ Proof.
     destruct (OE u1 ltac:(lra)) as [? | [? | [? | [? | (r & hr & tr & lr)]]]]; try lra.
     apply (firstE r ltac:(lra)). lra.
 Qed.
+
+Theorem two_shielded_vehicles : Theorem2_apart.
+Proof.
+  intros k zones occupied s v t w from from' ok cov ms mt all u lo occ.
+  destruct (cov (s u) (t u) occ) as (z & zin & ins). destruct (all z zin) as [sh lanes].
+  assert (which : lane z = true \/ lane z = false) by (destruct (lane z); auto).
+  destruct which as [la | la].
+  - destruct (lanes la) as (corner & sb & tb & y & ly & mir & sh').
+    exact (shielded_vehicles_keep_apart k z y s v t w from from' ok la ly mir corner ms mt sh sh' sb tb u lo ins).
+  - destruct sh as [(tau & c & l & b & since & -> & st & grid & obey & true & keeps & seen & judges)].
+    assert (lo' : tau since <= u) by (apply Rle_trans with (2 := lo); apply Rmax_l).
+    destruct (between_calls k tau ok grid since st u lo') as (i & hi & hu).
+    apply (judged_safe k s v tau c l) with (t := t) (w := w) (b := b) (z := z) (claimed := fun _ => False) (since := since)
+      (i := i) (u := u); auto; try (rewrite la; discriminate).
+    intros a d _ [].
+Qed.

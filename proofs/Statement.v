@@ -319,3 +319,12 @@ Definition Theorem2_together := forall k z y s v t w from from',
   shielded k z s v t w from -> shielded k y t w s v from' ->
   s (Rmax from from') < s_in z -> t (Rmax from from') < t_in z ->
   forall u, Rmax from from' <= u -> ~ inside z (s u) (t u).
+
+(* So two shielded vehicles keep apart: at crossings each of them sees to it, whatever the other does. *)
+Definition Theorem2_apart := forall k zones occupied s v t w from from',
+  valid k -> cover zones occupied -> motion s v -> motion t w ->
+  (forall z, In z zones -> shielded k z s v t w from /\
+    (lane z = true -> lead_from z < s_in z - t_in z < lead_to z /\
+      s (Rmax from from') < s_in z /\ t (Rmax from from') < t_in z /\
+      exists y, lane y = true /\ mirrored z y /\ shielded k y t w s v from')) ->
+  forall u, Rmax from from' <= u -> ~ occupied (s u) (t u).
