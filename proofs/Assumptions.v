@@ -1,5 +1,5 @@
 (* What every theorem rests on: check.sh compares it with axioms.txt. *)
-Require Import Shield Merge Pair Choice Limit Precedence Turns Controls.
+Require Import Shield Merge Pair Choice Limit Precedence Turns Order Controls.
 Print Assumptions verified_plans_keep_apart.
 Print Assumptions at_most_one_comes_in_ahead.
 Print Assumptions shielded_vehicles_keep_apart.
@@ -14,8 +14,9 @@ Print Assumptions arrivals_exclude.
 Print Assumptions arrivals_exclude_equals.
 Print Assumptions surely_at_most_perhaps.
 Print Assumptions never_two_turns.
-Print Assumptions never_both.
-Print Assumptions right_of_way_agrees.
+Print Assumptions orders_agree.
+Print Assumptions never_both_right_of_way.
+Print Assumptions never_both_equals.
 Print Assumptions conditions_can_be_met.
 Print Assumptions C6_is_needed.
 Print Assumptions A9_is_needed.

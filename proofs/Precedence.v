@@ -1,4 +1,4 @@
-(* Precedence: Lemmas 1 to 5 of docs/theorem.md, "By arrival" and "Counts of rest". *)
+(* Precedence: Lemmas 1 to 3 and 5 of docs/theorem.md, "By arrival" and "Counts of rest". *)
 Require Import Reals Lra Lia Psatz.
 Require Import Contract Shipped Motion Reach Statement Ego.
 Open Scope R_scope.
@@ -131,6 +131,35 @@ Definition ended (m i : nat) :=
 Definition perhaps (x : R) (m e count : nat) :=
   ended m e /\ p (e + count)%nat <= x < p (e + count + 1)%nat.
 
+(* A stretch of rest that goes on until after a count ended began after it ended. *)
+Lemma stretch_began m a last sure e :
+  enough m -> from <= p 0%nat ->
+  (forall j, sure j -> v (q j) <= r /\ arrival <= q j) -> (forall j, (a <= j <= last)%nat -> sure j) -> (a <= last)%nat ->
+  ended m e -> p e < q (last + 1)%nat -> p e < q a.
+Proof.
+  intros en h sure_says stretch nonempty end_ goes_on.
+  assert (fromp : forall i, from <= p i).
+  { intros i. apply Rle_trans with (p 0%nat); [exact h | apply (calls_ordered k p ok grid_p); lia]. }
+  assert (order_q : forall i j, (i <= j)%nat -> q i <= q j) by (apply (calls_ordered k q ok grid_q)).
+  destruct end_ as [absent | [back fast]].
+  - destruct (sure_says a (stretch a ltac:(lia))). lra.
+  - destruct (Rlt_le_dec (p e) (q a)) as [? | before]; [assumption | exfalso].
+    set (i := (e - (m - 1))%nat) in *. assert (ie : (i + (m - 1) = e)%nat) by (unfold i; lia).
+    destruct (Rle_dec (p i) (q a)) as [within | earlier].
+    + destruct (sure_says a (stretch a ltac:(lia))) as [rest _].
+      assert (r < v (q a)); [| lra].
+      apply moves_throughout with i (m - 1)%nat; auto; [intros j hj; apply fast; lia | rewrite ie; lra].
+    + destruct (seen_to_move i m en (fromp i)) as (j & hj & moving).
+      * pose proof (order_q O a ltac:(lia)). lra.
+      * intros j hj. apply fast. lia.
+      * rewrite ie in hj.
+        assert (a <= j)%nat.
+        { destruct (le_lt_dec a j) as [? | lt]; [assumption | exfalso]. pose proof (order_q j a ltac:(lia)). lra. }
+        assert (j <= last)%nat.
+        { destruct (le_lt_dec j last) as [? | lt]; [assumption | exfalso]. pose proof (order_q (last + 1)%nat j ltac:(lia)). lra. }
+        destruct (sure_says j (stretch j ltac:(lia))). lra.
+Qed.
+
 (* Lemma 5: S of one shield exceeds L of the other by 1 at most without jitter, by 2 at most with it. *)
 Theorem surely_at_most_perhaps x m a S_Q sure e L_P :
   enough m -> from <= p 0%nat ->
@@ -138,28 +167,13 @@ Theorem surely_at_most_perhaps x m a S_Q sure e L_P :
 Proof.
   intros en h (sure_says & stretch & upto & last) (end_ & now1 & now2).
   destruct (Nat.eq_dec S_Q 0) as [? | nz]; [lia |]. specialize (last nz).
-  assert (fromp : forall i, from <= p i).
-  { intros i. apply Rle_trans with (p 0%nat); [exact h | apply (calls_ordered k p ok grid_p); lia]. }
-  assert (order_q : forall i j, (i <= j)%nat -> q i <= q j) by (apply (calls_ordered k q ok grid_q)).
   assert (order_p : forall i j, (i <= j)%nat -> p i <= p j) by (apply (calls_ordered k p ok grid_p)).
   assert (pe : p e <= x) by (apply Rle_trans with (2 := now1); apply order_p; lia).
   (* The stretch of rest began after the count ended. *)
   assert (began : p e < q a).
-  { destruct end_ as [absent | [back fast]].
-    - destruct (sure_says a (stretch a ltac:(lia))). lra.
-    - destruct (Rlt_le_dec (p e) (q a)) as [? | before]; [assumption | exfalso].
-      set (i := (e - (m - 1))%nat) in *. assert (ie : (i + (m - 1) = e)%nat) by (unfold i; lia).
-      destruct (Rle_dec (p i) (q a)) as [within | earlier].
-      + destruct (sure_says a (stretch a ltac:(lia))) as [rest _].
-        assert (r < v (q a)); [| lra].
-        apply moves_throughout with i (m - 1)%nat; auto; [intros j hj; apply fast; lia | rewrite ie; lra].
-      + destruct (seen_to_move i m en (fromp i)) as (j & hj & moving).
-        * pose proof (order_q O a ltac:(lia)). lra.
-        * intros j hj. apply fast. lia.
-        * rewrite ie in hj.
-          assert (a <= j)%nat.
-          { destruct (le_lt_dec a j) as [? | lt]; [assumption | exfalso]. pose proof (order_q j a ltac:(lia)). lra. }
-          pose proof (upto j ltac:(lra)). destruct (sure_says j (stretch j ltac:(lia))). lra. }
+  { apply (stretch_began m a (a + S_Q - 1) sure e en h sure_says); [intros; apply stretch; lia | lia | exact end_ |].
+    destruct (Rlt_le_dec x (q (a + S_Q - 1 + 1)%nat)) as [? | late]; [lra | exfalso].
+    pose proof (upto _ late). lia. }
   (* So many calls of Q fit in. *)
   pose proof (spacing k q grid_q a (S_Q - 1)) as [LQ _]. replace (a + (S_Q - 1))%nat with (a + S_Q - 1)%nat in LQ by lia.
   pose proof (spacing k p grid_p e (L_P + 1)) as [_ UP]. replace (e + (L_P + 1))%nat with (e + L_P + 1)%nat in UP by lia.
