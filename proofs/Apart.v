@@ -78,7 +78,6 @@ Proof.
     apply G. intros x [? ?]. pose proof (gentle x u ltac:(lra) ltac:(lra) ltac:(lra)). pose proof (low x ltac:(lra)).
     assert (b * (u - x) <= bh * (u - x)) by (apply Rmult_le_compat_r; lra). nra.
   - pose proof (stop u ltac:(lra)) as R. pose proof (vpos u).
-    assert (Q : forall z, z / (b + b) = z / b / 2) by (intros; field; lra).
     assert (far : W * W / (bh + bh) - Rmax (W - bh * (u - T)) 0 * Rmax (W - bh * (u - T)) 0 / (bh + bh) <= t u - t T).
     { destruct (Rle_dec 0 (W - bh * (u - T))) as [moving | rest].
       - rewrite Rmax_left by lra.

@@ -114,28 +114,6 @@ Proof.
   apply (below_by_derivative t w s v); auto. intros u _. apply (moves s v ms).
 Qed.
 
-(* A gap whose rate of change never grows is smallest at one of the ends. *)
-Lemma concave_above h h' t1 t2 u :
-  t1 <= u <= t2 ->
-  (forall t, is_derive h t (h' t)) ->
-  (forall t t', t1 <= t -> t <= t' -> t' <= t2 -> h' t' <= h' t) ->
-  0 <= h t1 -> 0 <= h t2 -> 0 <= h u.
-Proof.
-  intros [lo hi] dh falls h1 h2.
-  destruct (Rle_lt_dec 0 (h u)) as [? | neg]; [assumption | exfalso].
-  assert (t1 < u) by (destruct lo; [assumption | subst; lra]).
-  assert (u < t2) by (destruct hi; [assumption | subst; lra]).
-  assert (cont : forall t, continuity_pt h t).
-  { intros t. apply continuity_pt_filterlim, (ex_derive_continuous h). exists (h' t). apply dh. }
-  destruct (MVT_gen h t1 u h') as (c & [c1 c2] & eq1); auto.
-  destruct (MVT_gen h u t2 h') as (d & [d1 d2] & eq2); auto.
-  rewrite Rmin_left in c1, d1 by lra. rewrite Rmax_right in c2, d2 by lra.
-  assert (h' c < 0) by nra.
-  assert (0 < h' d) by nra.
-  assert (h' d <= h' c) by (apply falls; lra).
-  lra.
-Qed.
-
 (* Places are continuous: who gets from here to there is at every place between at some time. *)
 Lemma passes s v t1 t2 place :
   motion s v -> t1 <= t2 -> s t1 <= place <= s t2 -> exists t, t1 <= t <= t2 /\ s t = place.

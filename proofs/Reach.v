@@ -47,34 +47,10 @@ Proof.
   lra.
 Qed.
 
-Lemma at_most_grows r a x y :
-  0 <= speed r -> 0 <= x <= y -> distance (at_most r a x) <= distance (at_most r a y).
-Proof.
-  intros v0 [x0 xy]. cbn.
-  assert ((speed r + Rmax (speed r + a * x) 0) * x <= (speed r + Rmax (speed r + a * y) 0) * y); [| lra].
-  cases; nra.
-Qed.
-
 Lemma at_most_speed_nonneg r a x : 0 <= speed (at_most r a x).
 Proof. cbn. apply Rmax_r. Qed.
 
-Lemma at_most_no_nearer r a x : 0 <= speed r -> 0 <= x -> distance r <= distance (at_most r a x).
-Proof.
-  intros v0 x0. cbn.
-  assert (0 <= (speed r + Rmax (speed r + a * x) 0) * x); [| lra].
-  apply Rmult_le_pos; [pose proof (Rmax_r (speed r + a * x) 0); lra | lra].
-Qed.
-
-Lemma rest_of_no_nearer r b : 0 < b -> distance r <= rest_of r b.
-Proof.
-  intros. unfold rest_of. assert (0 <= speed r * speed r / (b + b)); [| lra].
-  apply Rmult_le_pos; [nra | left; apply Rinv_0_lt_compat; lra].
-Qed.
-
 (** * Braking to rest *)
-
-Lemma over_twice x b : 0 < b -> x / (b + b) = x / b / 2.
-Proof. intros. field. lra. Qed.
 
 (* L8, L9: who brakes at b or harder gets no farther than to the place of rest. *)
 Lemma stops_by s v b V t1 t2 :
