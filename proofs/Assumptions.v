@@ -5,8 +5,7 @@ Print Assumptions at_most_one_comes_in_ahead.
 Print Assumptions shielded_vehicles_keep_apart.
 Print Assumptions two_shielded_vehicles.
 Print Assumptions chosen_is_verified.
-Print Assumptions braking_meets_all.
-Print Assumptions spare_meets.
+Print Assumptions kept_is_verified.
 Print Assumptions may_go.
 Print Assumptions keeps_limit.
 Print Assumptions reduced_go_may_be_slow.

@@ -58,12 +58,6 @@ Qed.
 
 (** * The search for a plan *)
 
-(* The candidate that goes until hazards up to [last] are passed and rests before the others: its margin, as [best] computes
-   it. [beyond] is the least place of rest of the others. *)
-Definition candidate_margin (passed : list hazard) (last : hazard) (n : nat) (beyond : R) :=
-  Rmin (fold_right Rmin (passage_of last) (map passage_of passed))
-    (stops_short k beyond (rest k (most d) (INR n * period k))).
-
 Lemma below_fold x y l : x <= fold_right Rmin y l -> x <= y /\ forall z, In z l -> x <= z.
 Proof.
   induction l as [| a l IH]; cbn; intros le; [split; [exact le | intros _ []] |].
@@ -101,35 +95,77 @@ Lemma stops_before n lim beyond :
   beyond <= lim -> 0 <= stops_short k beyond (rest k (most d) (INR n * period k)) -> stops k d n lim.
 Proof. intros le st. pose proof (rests_below n). unfold stops, stops_short in *. lra. Qed.
 
-(* The plan that [best] returns, if its margin is not negative, meets every hazard: those that are sorted up to [last] are
-   passed, the others come after it. [n] is what [periods] gives. *)
-Theorem chosen_meets_all passed last others n beyond :
-  (forall h, In h passed -> target h <= target last) ->
-  (forall h, In h others -> beyond <= rests_at h /\ rests_at h <= limit h) ->
-  clears last <= shortest_period k + INR n * period k ->
-  0 <= candidate_margin passed last n beyond ->
-  forall h, In h (passed ++ last :: others) -> met n h.
+(* The search itself: [best] of verified.rs. [passed] is the least margin of the hazards that are passed, [found] the best
+   margin so far and the periods of its plan. Hazards are sorted; [periods] counts whole periods; clearing that takes longer
+   than [horizon] is not planned. *)
+Variables (horizon : R) (periods : R -> nat).
+Hypothesis enough_periods : forall time, time <= shortest_period k + INR (periods time) * period k.
+
+Definition least_rest (hs : list hazard) := fold_right Rmin far (map rests_at hs).
+
+Fixpoint search (hs : list hazard) (passed : R) (found : R * nat) : R * nat :=
+  match hs with
+  | nil => found
+  | h :: beyond =>
+      let passed' := Rmin passed (passage_of h) in
+      if Rle_dec passed' (fst found) then found
+      else if Rlt_dec horizon (clears h) then found
+      else
+        let n := periods (clears h) in
+        let margin := Rmin passed' (stops_short k (least_rest beyond) (rest k (most d) (INR n * period k))) in
+        search beyond passed' (if Rlt_dec (fst found) margin then (margin, n) else found)
+  end.
+
+Definition best (hs : list hazard) : R * nat :=
+  search hs far (stops_short k (least_rest hs) (rest_of (braking d) (ego_braking k)), O).
+
+Lemma least_rest_below hs h : In h hs -> least_rest hs <= rests_at h.
+Proof. intros hin. apply (below_fold (least_rest hs) far (map rests_at hs) (Rle_refl _)), in_map, hin. Qed.
+
+Fixpoint sorted (hs : list hazard) :=
+  match hs with nil => True | h :: beyond => (forall g, In g beyond -> target h <= target g) /\ sorted beyond end.
+
+Lemma search_meets_all hs : forall before passed found,
+  (forall h, In h (before ++ hs) -> rests_at h <= limit h) ->
+  sorted hs -> (forall g h, In g before -> In h hs -> target g <= target h) ->
+  (forall h, In h before -> passed <= passage_of h) ->
+  (0 <= fst found -> forall h, In h (before ++ hs) -> met (snd found) h) ->
+  0 <= fst (search hs passed found) -> forall h, In h (before ++ hs) -> met (snd (search hs passed found)) h.
 Proof.
-  intros sorted far_ones periods_ margin h hin. unfold candidate_margin in margin.
-  pose proof (Rmin_l (fold_right Rmin (passage_of last) (map passage_of passed))
-    (stops_short k beyond (rest k (most d) (INR n * period k)))) as L.
-  pose proof (Rmin_r (fold_right Rmin (passage_of last) (map passage_of passed))
-    (stops_short k beyond (rest k (most d) (INR n * period k)))) as R.
-  destruct (below_fold 0 (passage_of last) (map passage_of passed) ltac:(lra)) as [P1 P2].
-  apply in_app_or in hin. destruct hin as [hin | [<- | hin]].
-  - right. split; [| apply P2, in_map, hin].
-    apply Rle_trans with (2 := periods_). apply clearing_grows; auto.
-  - right. split; assumption.
-  - left. destruct (far_ones h hin). apply stops_before with beyond; lra.
+  induction hs as [| h beyond IH]; intros before passed found near order between least_passed good; [exact good |].
+  destruct order as [first order]. cbn [search].
+  set (passed' := Rmin passed (passage_of h)).
+  destruct (Rle_dec passed' (fst found)) as [_ | better]; [exact good |].
+  destruct (Rlt_dec horizon (clears h)) as [_ | soon]; [exact good |].
+  set (n := periods (clears h)).
+  set (margin := Rmin passed' (stops_short k (least_rest beyond) (rest k (most d) (INR n * period k)))).
+  assert (same : before ++ h :: beyond = (before ++ h :: nil) ++ beyond) by (rewrite <- app_assoc; reflexivity).
+  rewrite same in *.
+  assert (P1 : passed' <= passed) by apply Rmin_l. assert (P2 : passed' <= passage_of h) by apply Rmin_r.
+  assert (up_to : forall g, In g (before ++ h :: nil) -> passed' <= passage_of g /\ target g <= target h).
+  { intros g hin. apply in_app_or in hin. destruct hin as [hin | [<- | []]]; [| split; [exact P2 | apply Rle_refl]].
+    split; [specialize (least_passed g hin); lra | apply between; [exact hin | left; reflexivity]]. }
+  apply IH; auto.
+  - intros g f hin fin. apply in_app_or in hin. destruct hin as [hin | [<- | []]]; [| apply first, fin].
+    apply between; [exact hin | right; exact fin].
+  - intros g hin. apply up_to, hin.
+  - destruct (Rlt_dec (fst found) margin) as [_ | _]; [| exact good]. cbn [fst snd]. intros pos g hin.
+    assert (M1 : margin <= passed') by apply Rmin_l.
+    assert (M2 : margin <= stops_short k (least_rest beyond) (rest k (most d) (INR n * period k))) by apply Rmin_r.
+    specialize (near g hin). apply in_app_or in hin. destruct hin as [hin | hin].
+    + right. destruct (up_to g hin). split; [| lra].
+      apply Rle_trans with (clears h); [apply clearing_grows; assumption | apply enough_periods].
+    + left. pose proof (least_rest_below beyond g hin). apply stops_before with (least_rest beyond); lra.
 Qed.
 
-(* The plan that brakes at once. *)
-Theorem braking_meets_all hazards beyond :
-  (forall h, In h hazards -> beyond <= rests_at h /\ rests_at h <= limit h) ->
-  0 <= stops_short k beyond (rest_of (braking d) (ego_braking k)) ->
-  forall h, In h hazards -> met 0 h.
+(* The plan that [best] finds meets every hazard, if its margin is not negative. *)
+Theorem best_meets_all hs :
+  sorted hs -> (forall h, In h hs -> rests_at h <= limit h) ->
+  0 <= fst (best hs) -> forall h, In h hs -> met (snd (best hs)) h.
 Proof.
-  intros near st h hin. left. destruct (near h hin). unfold stops, stops_short, rests in *. lra.
+  intros order near. unfold best. apply (search_meets_all hs nil); auto; [intros _ _ [] | intros _ [] |].
+  cbn [fst snd]. intros st h hin. left. pose proof (least_rest_below hs h hin). specialize (near h hin).
+  unfold stops, stops_short, rests in *. lra.
 Qed.
 
 (* What [spare] computes of one hazard: the larger of both margins if it is passed in time, else that of the rest. *)
@@ -170,18 +206,21 @@ Proof.
   lra.
 Qed.
 
-(* The chosen plan is verified against the zone of every hazard (D12). *)
-Theorem chosen_is_verified k sensed pl pm a far passed last others n beyond z o b h :
+(* D12: the plan that is chosen is verified against the zone of every hazard. *)
+Theorem chosen_is_verified k sensed pl pm a far horizon periods hs z o b h :
   valid k -> 0 < far -> - ego_braking k <= a ->
+  (forall time, time <= shortest_period k + INR (periods time) * period k) ->
   let d := departure k sensed pl pm a in
-  (forall h, In h passed -> target h <= target last) ->
-  (forall h, In h others -> beyond <= rests_at h /\ rests_at h <= limit h) ->
-  clears k d last <= shortest_period k + INR n * period k ->
-  0 <= candidate_margin k d far passed last n beyond ->
-  In h (passed ++ last :: others) -> hazard_of k z o b h -> verified k z o b d n.
+  sorted hs -> (forall h, In h hs -> rests_at h <= limit h) ->
+  0 <= fst (best k d far horizon periods hs) ->
+  In h hs -> hazard_of k z o b h -> verified k z o b d (snd (best k d far horizon periods hs)).
 Proof.
-  intros ok f0 ab d sorted far_ones periods_ margin hin hz.
+  intros ok f0 ab enough d order near margin hin hz.
   apply met_is_verified with (far := far) (h := h); auto.
-  apply chosen_meets_all with passed last others beyond; auto;
-    [apply departure_least_speed | apply departure_brakes_first; assumption].
+  apply best_meets_all; auto; [apply departure_least_speed | apply departure_brakes_first; assumption].
 Qed.
+
+(* So is what is left of a plan that is kept against a suspect hazard (D16). *)
+Theorem kept_is_verified k d far n z o b h :
+  0 < far -> 0 <= spare_of k d far n h -> hazard_of k z o b h -> verified k z o b d n.
+Proof. intros f0 sp hz. apply met_is_verified with (far := far) (h := h); auto. apply spare_meets, sp. Qed.

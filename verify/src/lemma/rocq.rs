@@ -31,73 +31,76 @@ pub fn shipped() -> String {
     };
     let [a, cap, time, target, v] = ["acceleration", "cap", "time", "target", "v"].map(named);
     let mut file = File::new(k);
-    file.define("start (v : R) : reach", Reach::start(v));
+    file.define("start (v : R) : reach", &Reach::start(v));
     file.define(
         "at_most (from : reach) (acceleration time : R) : reach",
-        from.at_most(a, time),
+        &from.at_most(a, time),
     );
     file.define(
         "at_least (from : reach) (acceleration cap time : R) : reach",
-        from.at_least(a, cap, time),
+        &from.at_least(a, cap, time),
     );
     file.define(
         "rushing (from : reach) (acceleration cap time : R) : reach",
-        from.rushing(a, cap, time),
+        &from.rushing(a, cap, time),
     );
     file.define(
         "rest_of (from : reach) (braking : R) : R",
-        from.rest(named("braking")),
+        &from.rest(named("braking")),
     );
     file.define(
         "until (from : reach) (target acceleration cap : R) : R * R",
-        from.until(target, a, cap),
+        &from.until(target, a, cap),
     );
-    file.define("unlimited (k : contract) : R", margin::unlimited::<Term>(k));
+    file.define(
+        "unlimited (k : contract) : R",
+        &margin::unlimited::<Term>(k),
+    );
     let [sensed, least, most, command] =
         ["sensed", "previous_least", "previous_most", "command"].map(named);
     file.define(
         "departure (k : contract) (sensed previous_least previous_most command : R) : departs",
-        margin::departure(k, sensed, [least, most], command),
+        &margin::departure(k, sensed, [least, most], command),
     );
     file.define(
         "clearing (k : contract) (from : reach) (target : R) : R * R",
-        margin::clearing(k, from, target),
+        &margin::clearing(k, from, target),
     );
     file.define(
         "rest (k : contract) (from : reach) (time : R) : R",
-        margin::rest(k, from, time),
+        &margin::rest(k, from, time),
     );
     file.define(
         "stops_short (k : contract) (limit rests : R) : R",
-        margin::stops_short(k, named("limit"), named("rests")),
+        &margin::stops_short(k, named("limit"), named("rests")),
     );
     file.define(
         "rush (k : contract) (v time : R) : reach",
-        margin::rush(k, v, time),
+        &margin::rush(k, v, time),
     );
     file.define(
         "dawdle (k : contract) (v time : R) : reach",
-        margin::dawdle(k, v, time),
+        &margin::dawdle(k, v, time),
     );
     file.define(
         "clears_before (k : contract) (away : R) (from : reach) : R",
-        margin::clears_before(k, named("away"), from),
+        &margin::clears_before(k, named("away"), from),
     );
     file.define(
         "safe_gap (k : contract) (v ego_v : R) : R",
-        margin::safe_gap(k, v, named("ego_v")),
+        &margin::safe_gap(k, v, named("ego_v")),
     );
     file.define(
         "enters_ahead (k : contract) (gap : R) (from : reach) (needed : R) : R",
-        margin::enters_ahead(k, named("gap"), from, named("needed")),
+        &margin::enters_ahead(k, named("gap"), from, named("needed")),
     );
     file.define(
         "earliest_rest (k : contract) (v : R) : R",
-        margin::earliest_rest(k, v),
+        &margin::earliest_rest(k, v),
     );
     file.define(
         "most_command (k : contract) (sensed in_effect : R) : R",
-        choice::most(k, sensed, named("in_effect")),
+        &choice::most(k, sensed, named("in_effect")),
     );
     file.text
 }
@@ -137,7 +140,7 @@ impl File {
         }
     }
 
-    fn define(&mut self, signature: &str, value: impl Value) {
+    fn define(&mut self, signature: &str, value: &impl Value) {
         let mut writer = Writer {
             times: &self.times,
             uses: BTreeMap::new(),
