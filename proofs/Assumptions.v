@@ -9,6 +9,7 @@ Print Assumptions kept_is_verified.
 Print Assumptions may_go.
 Print Assumptions keeps_limit.
 Print Assumptions reduced_go_may_be_slow.
+Print Assumptions reduced_go_is_fast_enough.
 Print Assumptions arrivals_exclude.
 Print Assumptions arrivals_exclude_equals.
 Print Assumptions surely_at_most_perhaps.
