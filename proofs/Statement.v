@@ -158,7 +158,8 @@ Record log := {
   goes : nat -> nat
 }.
 
-(* What is logged is true, at every call S i. *)
+(* What is logged is true, at every call S i. At a call that sees nothing anything true may stand there: nothing is verified
+   then. *)
 Definition true_log (k : contract) (l : log) (s v : R -> R) (tau c : nat -> R) :=
   forall i, own_holds k (ego_at l (S i)) (s (tau (S i))) (v (tau (S i))) /\
     previous_least l (S i) <= c i <= previous_most l (S i).
@@ -254,12 +255,13 @@ Record keeps_all (k : contract) (path : Type) (zones : path -> list zone) (s v :
   starts : (1 <= since o)%nat
 }.
 
-(* The conditions: a valid contract, zones that cover, an ego that obeys what it is commanded, a true log, others that keep
-   the contract, and a shield that judges every zone of every candidate path of every other at every call.
-   What is demanded of contract and others is an argument, so that Controls.v can leave something out. *)
+(* What may be demanded of an other: arguments as of [keeps_all]. *)
 Definition conducts := forall (k : contract) (path : Type),
   (path -> list zone) -> (R -> R) -> (R -> R) -> (nat -> R) -> (nat -> R) -> log -> other path -> Prop.
 
+(* The conditions: a valid contract, zones that cover, an ego that obeys what it is commanded, a true log, others that keep
+   the contract, and a shield that judges every zone of every candidate path of every other at every call.
+   What is demanded of contract and others is an argument, so that Controls.v can leave something out. *)
 Definition Conditions (contracts : contract -> Prop) (conduct : conducts)
     (k : contract) (path : Type) (zones : path -> list zone) (occupied : path -> R -> R -> Prop)
     (s v : R -> R) (tau c : nat -> R) (l : log) (others : other path -> Prop) :=
