@@ -279,7 +279,7 @@ Proof.
       { destruct (Rle_dec 0 (ramp - x)).
         - apply Rle_trans with (ego_acceleration k * (ramp - x)); [apply Rmult_le_compat_r; lra |].
           apply Rmult_le_compat_l; unfold x; lra.
-        - nra. }
+        - assert (0 <= ego_go k * (x - ramp)) by (apply Rmult_le_pos; lra). lra. }
       unfold grows. split.
       - revert L4. cases; lra.
       - assert (speed q3 <= v t).
