@@ -20,3 +20,25 @@ fn too_few_boxes_show_nothing_and_name_the_inputs() {
     assert_eq!(stops["verdict"], "proved");
     assert!(stops["met_m"].as_f64() <= stops["at_most_m"].as_f64());
 }
+
+#[test]
+fn the_margins_are_written_for_rocq_and_nothing_is_proved() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("Shipped.v");
+    let write = |form: &str, more: &[&str]| {
+        let mut command = cargo_bin_cmd!("cede");
+        command.args(["verify", "lemmas", "--write", form]);
+        command.arg(&file).args(more).output().unwrap()
+    };
+    let output = write("rocq", &[]);
+    assert!(output.status.success(), "{output:?}");
+    let written = std::fs::read_to_string(&file).unwrap();
+    assert_eq!(written, include_str!("../../proofs/Shipped.v"));
+    for (form, more) in [
+        ("lean", &[][..]),
+        ("rocq", &["--json"]),
+        ("rocq", &["--only", "rest"]),
+    ] {
+        assert_eq!(write(form, more).status.code(), Some(2), "{form} {more:?}");
+    }
+}

@@ -14,6 +14,7 @@ mod formula;
 mod limit;
 mod motion;
 mod reach;
+mod rocq;
 mod symbol;
 mod tail;
 mod term;
@@ -23,6 +24,7 @@ mod z3;
 
 use formula::Formula;
 pub use formula::Script;
+pub use rocq::shipped;
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 use term::Term;

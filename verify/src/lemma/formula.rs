@@ -246,18 +246,23 @@ impl Writer {
     }
 }
 
-/// A finite `f32` exactly: an integer over a power of two.
-fn rational(value: f32) -> String {
-    let magnitude = f64::from(value.abs());
-    let mut power = 0_u32;
+/// A finite `f32` exactly, not negative: an integer over a power of two.
+pub(super) fn whole_over(value: f32) -> (f64, f64) {
+    let magnitude = f64::from(value);
+    let mut power = 1.0;
     // Exact: doubling changes the exponent alone.
-    while (magnitude * 2_f64.powi(power as i32)).fract() != 0.0 {
-        power += 1;
+    while (magnitude * power).fract() != 0.0 {
+        power *= 2.0;
     }
-    let whole = magnitude * 2_f64.powi(power as i32);
-    let size = match power {
-        0 => format!("{whole:.1}"),
-        _ => format!("(/ {whole:.1} {:.1})", 2_f64.powi(power as i32)),
+    (magnitude * power, power)
+}
+
+/// A finite `f32` as solvers read it.
+fn rational(value: f32) -> String {
+    let (whole, over) = whole_over(value.abs());
+    let size = match over == 1.0 {
+        true => format!("{whole:.1}"),
+        false => format!("(/ {whole:.1} {over:.1})"),
     };
     if value < 0.0 {
         format!("(- {size})")

@@ -245,3 +245,12 @@ fn lemmas_have_names_of_their_own() {
     names.dedup();
     assert_eq!(names.len(), count);
 }
+
+#[test]
+fn the_rocq_development_is_about_the_code_as_it_is() {
+    let committed = include_str!("../../../proofs/Shipped.v");
+    assert!(
+        committed == super::shipped(),
+        "proofs/Shipped.v differs from the code: cede verify lemmas --write rocq proofs/Shipped.v, and mend the proofs"
+    );
+}

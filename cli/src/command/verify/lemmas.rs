@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::threads::Threads;
 use cede_data::output;
-use cede_verify::lemma::{Answer, Lemma, Quantity, Settled, Solver, SolverError, lemmas};
+use cede_verify::lemma::{Answer, Lemma, Quantity, Settled, Solver, SolverError, lemmas, shipped};
 use clap::Args;
 use rayon::prelude::*;
 use std::io::Write as _;
@@ -29,9 +29,10 @@ pub(crate) struct Lemmas {
     /// Time limit per query in seconds.
     #[arg(long, value_name = "SECONDS", default_value_t = 60)]
     timeout: u64,
-    /// Also write the queries to this folder as SMT-LIB files.
-    #[arg(long, value_name = "DIR")]
-    write: Option<PathBuf>,
+    /// Also write the queries to this folder as SMT-LIB files. `--write rocq FILE`: write the bounds and margins to this
+    /// file as Rocq definitions, and prove nothing.
+    #[arg(long, value_names = ["DIR", "FILE"], num_args = 1..=2)]
+    write: Vec<PathBuf>,
     #[command(flatten)]
     threads: Threads,
     /// Print one JSON object instead.
@@ -49,8 +50,10 @@ impl Lemmas {
             .into_iter()
             .filter(|lemma| self.only.as_deref().is_none_or(|only| only == lemma.id))
             .collect();
-        if let Some(folder) = &self.write {
-            write(folder, &chosen)?;
+        match self.write.as_slice() {
+            [form, file] => return self.print(form, file),
+            [folder] => write(folder, &chosen)?,
+            _ => {}
         }
         let solver = Solver::find(self.solver.as_deref()).map_err(unusable)?;
         let rows = self.settle(&solver, chosen)?;
@@ -66,6 +69,26 @@ impl Lemmas {
         } else {
             Err(Failure::Check(format!("not proved: {}", open.join(", "))))
         }
+    }
+
+    /// Writes what another prover is asked about.
+    fn print(&self, form: &Path, file: &Path) -> Result<(), Failure> {
+        if form != Path::new("rocq") {
+            let form = form.display();
+            return Err(Failure::Usage(format!(
+                "--write {form} FILE: the form is rocq"
+            )));
+        }
+        let options = [
+            ("--only", self.only.is_some()),
+            ("--solver", self.solver.is_some()),
+            ("--json", self.json),
+        ];
+        if let Some((option, _)) = options.into_iter().find(|(_, given)| *given) {
+            return Err(Failure::ignored(option, "--write rocq"));
+        }
+        output::write(file, |file| file.write_all(shipped().as_bytes()))?;
+        Ok(())
     }
 
     fn settle(&self, solver: &Solver, lemmas: Vec<Lemma>) -> Result<Vec<SettledLemma>, Failure> {
