@@ -92,9 +92,13 @@ impl<'a> Body<'a> {
         1.001 * self.radius + 1.5 * (self.inflation + sweep)
     }
 
-    /// The length (m) of the footprint with its inflation.
-    pub(super) fn length(&self) -> f32 {
-        self.footprint.length + 2.0 * self.inflation
+    /// The footprint with its inflation.
+    pub(super) fn footprint(&self) -> Footprint {
+        let inflated = |size: f32| size + 2.0 * self.inflation;
+        Footprint {
+            length: inflated(self.footprint.length),
+            width: inflated(self.footprint.width),
+        }
     }
 
     /// What moves on piece `i`.

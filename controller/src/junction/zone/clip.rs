@@ -191,14 +191,19 @@ fn bounds(a: &Motion, b: &Motion, polygon: &Polygon) -> Option<Patch> {
             from: lead.from + offset - INFLATION,
             to: lead.to + offset + INFLATION,
         },
-        parallel: parallel.then_some(Span {
-            from: a.arc + ego.from,
-            to: a.arc + ego.to,
-        }),
+        parallel: parallel.then_some([along(ego, a), along(other, b)]),
         starts: parallel && starts,
         ends: parallel && ends,
         mixed: opposite(a, b),
     })
+}
+
+/// An interval of a motion as arc lengths.
+fn along(interval: Span, motion: &Motion) -> Span {
+    Span {
+        from: motion.arc + interval.from,
+        to: motion.arc + interval.to,
+    }
 }
 
 /// An interval of a motion as arc lengths; one that reaches an end of the route goes on past it.

@@ -2,9 +2,11 @@
 
 use super::clip::Cell;
 use super::{FAR, MAX_ZONES, Span, WIDEST, Zone};
+use crate::geometry::Footprint;
+use crate::junction::MAX_PATH_LENGTH;
 use crate::junction::conflict::ConflictKind;
 
-/// Vehicles that touch while they point the same way share a lane if they do so over this distance (m).
+/// Vehicles that point the same way share a lane if they do so over this distance (m) of both paths.
 const LANE: f32 = 2.0;
 
 /// A part of the occupied set, on the way to a [`Zone`].
@@ -13,8 +15,8 @@ pub(super) struct Patch {
     pub(super) ego: Span,
     pub(super) other: Span,
     pub(super) lead: Span,
-    /// Arc lengths of the ego at which it touches the other while both point the same way.
-    pub(super) parallel: Option<Span>,
+    /// Arc lengths of the ego and of the other at which they touch while both point the same way.
+    pub(super) parallel: Option<[Span; 2]>,
     /// They do so where a route starts.
     pub(super) starts: bool,
     /// They do so where a route ends.
@@ -38,7 +40,18 @@ impl Patch {
             && holds(self.other, cell.other)
             && holds(self.lead, cell.lead)
             && self.mixed == cell.opposite
-            && (!cell.parallel || self.parallel.is_some_and(|known| holds(known, cell.ego)))
+            && (!cell.parallel
+                || self
+                    .parallel
+                    .is_some_and(|[ego, other]| holds(ego, cell.ego) && holds(other, cell.other)))
+    }
+
+    /// By how many m² of the (s, t) plane both in one cover more than each for itself.
+    fn growth(&self, other: &Self) -> f32 {
+        let area = |ego: Span, other: Span| extent(ego) * extent(other);
+        area(self.ego.hull(other.ego), self.other.hull(other.other))
+            - area(self.ego, self.other)
+            - area(other.ego, other.other)
     }
 
     fn absorb(&mut self, other: &Self) {
@@ -46,7 +59,7 @@ impl Patch {
         self.other = self.other.hull(other.other);
         self.lead = self.lead.hull(other.lead);
         self.parallel = match (self.parallel, other.parallel) {
-            (Some(a), Some(b)) => Some(a.hull(b)),
+            (Some([a, b]), Some([c, d])) => Some([a.hull(c), b.hull(d)]),
             (a, b) => a.or(b),
         };
         self.starts |= other.starts;
@@ -54,10 +67,24 @@ impl Patch {
         self.mixed |= other.mixed;
     }
 
-    /// The zone of vehicles that are `lengths` (m) long together.
-    pub(super) fn zone(&self, lengths: f32) -> Zone {
+    /// Whether they share a way in it, and do not just cross at a small angle: up to 30° they touch over a length and twice
+    /// both widths. A way that begins or ends with a route is shared on beyond it.
+    fn is_shared(&self, ego: Footprint, other: Footprint) -> bool {
+        let crossed = 2.0 * (ego.width + other.width);
+        let longer = |span: Span, footprint: Footprint| {
+            let cut = self.starts || self.ends;
+            let touched = if cut { 0.0 } else { footprint.length + crossed };
+            span.to - span.from >= LANE + touched
+        };
+        self.parallel
+            .is_some_and(|[a, b]| longer(a, ego) && longer(b, other))
+    }
+
+    /// The zone of two vehicles.
+    pub(super) fn zone(&self, ego: Footprint, other: Footprint) -> Zone {
+        let lengths = ego.length + other.length;
         let narrow = self.lead.to - self.lead.from <= WIDEST * lengths;
-        let lane = !self.mixed && narrow && self.parallel.is_some_and(|p| p.to - p.from >= LANE);
+        let lane = !self.mixed && narrow && self.is_shared(ego, other);
         // A shared lane goes on past the end of the shorter route, for both.
         let end = |interval: Span| Span {
             to: if lane && self.ends { FAR } else { interval.to },
@@ -77,6 +104,16 @@ impl Patch {
                 (false, _) => ConflictKind::Crossing,
             },
         }
+    }
+}
+
+/// The length of an interval; one that goes on past an end of a route is as long as a route may be.
+fn extent(interval: Span) -> f32 {
+    let length = interval.to - interval.from;
+    if length > MAX_PATH_LENGTH {
+        MAX_PATH_LENGTH
+    } else {
+        length
     }
 }
 
@@ -100,8 +137,23 @@ pub(super) fn covered(patches: &[Option<Patch>; MAX_ZONES], cell: &Cell) -> bool
     touching.next().is_some_and(|patch| patch.covers(cell)) && touching.next().is_none()
 }
 
-/// Adds a patch, or widens those that it touches: what hangs together ends up in one.
-pub(super) fn insert(patches: &mut [Option<Patch>; MAX_ZONES], mut patch: Patch) {
+/// Adds a patch, or widens those that it touches: what hangs together ends up in one. Without room, the two that make the
+/// least of a larger one do, too.
+pub(super) fn insert(patches: &mut [Option<Patch>; MAX_ZONES], patch: Patch) {
+    let mut patch = hanging_together(patches, patch);
+    // Each round empties a slot, or puts the patch into one.
+    for _ in 0..MAX_ZONES {
+        if let Some(slot) = patches.iter_mut().find(|slot| slot.is_none()) {
+            *slot = Some(patch);
+            return;
+        }
+        patch = joined(patches, patch);
+        patch = hanging_together(patches, patch);
+    }
+}
+
+/// The patch with those that it touches, which are taken out.
+fn hanging_together(patches: &mut [Option<Patch>], mut patch: Patch) -> Patch {
     let touched = |patches: &mut [Option<Patch>], patch: &Patch| {
         patches
             .iter_mut()
@@ -112,10 +164,38 @@ pub(super) fn insert(patches: &mut [Option<Patch>; MAX_ZONES], mut patch: Patch)
     while let Some(met) = touched(patches, &patch) {
         patch.absorb(&met);
     }
-    if let Some(slot) = patches.iter_mut().find(|slot| slot.is_none()) {
-        *slot = Some(patch);
-    } else if let Some(last) = patches.last_mut().and_then(Option::as_mut) {
-        last.absorb(&patch);
-        last.mixed = true;
+    patch
+}
+
+/// Makes one of two: of the patch and of those that fill all slots. It is taken out.
+fn joined(patches: &mut [Option<Patch>], patch: Patch) -> Patch {
+    let mut least = (FAR, 0, None);
+    for (i, a) in patches.iter().enumerate() {
+        let Some(a) = a else { continue };
+        let others = patches.iter().enumerate().skip(i + 1);
+        let others = others.filter_map(|(j, b)| Some((Some(j), (*b)?)));
+        for (j, b) in others.chain([(None, patch)]) {
+            let growth = a.growth(&b);
+            if growth < least.0 {
+                least = (growth, i, j);
+            }
+        }
     }
+    let (_, i, j) = least;
+    let taken = |patches: &mut [Option<Patch>], i: usize| patches.get_mut(i).and_then(Option::take);
+    let mut whole = taken(patches, i).unwrap_or(patch);
+    match j {
+        // The patch itself gets the slot that is free now.
+        Some(j) => {
+            if let Some(other) = taken(patches, j) {
+                whole.absorb(&other);
+            }
+            if let Some(slot) = patches.iter_mut().find(|slot| slot.is_none()) {
+                *slot = Some(patch);
+            }
+        }
+        None => whole.absorb(&patch),
+    }
+    whole.mixed = true;
+    whole
 }

@@ -136,8 +136,8 @@ pub(crate) type Zones = [Option<Zone>; MAX_ZONES];
 pub(crate) fn zones(ego: &Body<'_>, other: &Body<'_>) -> Zones {
     let mut patches = [None; MAX_ZONES];
     near_pieces(ego, other, |a, b| meet_stages(&mut patches, a, b));
-    let lengths = ego.length() + other.length();
-    patches.map(|patch| patch.map(|patch| patch.zone(lengths)))
+    let (ego, other) = (ego.footprint(), other.footprint());
+    patches.map(|patch| patch.map(|patch| patch.zone(ego, other)))
 }
 
 /// The zone of two vehicles on one route: a lane throughout, with a band that is the same for both. None if the route
@@ -150,7 +150,7 @@ pub(crate) fn zone_with_itself(body: &Body<'_>) -> Option<Zone> {
             meet_stages(&mut patches, a, b);
         }
     });
-    let apart = body.length() + INFLATION;
+    let apart = body.footprint().length + INFLATION;
     let widest = patches.iter().flatten().fold(apart, |widest, patch| {
         let widest = if patch.lead.to > widest {
             patch.lead.to
