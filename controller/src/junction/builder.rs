@@ -41,7 +41,7 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
                 paths: Vec::new(),
                 points: Vec::new(),
                 arc: Vec::new(),
-                conflicts: [[RouteConflict::NONE; R]; E],
+                conflicts: Vec::new(),
                 tolerance: TOLERANCE,
             },
             lines: Vec::new(),
@@ -318,6 +318,8 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
     fn push(&mut self, path: Path) -> Result<(), JunctionError> {
         let full = JunctionError::TooManyPaths { capacity: R };
         self.junction.paths.push(path).map_err(|_| full)?;
+        // There is room for the first `E`.
+        let _ = self.junction.conflicts.push([RouteConflict::NONE; R]);
         self.lines.push(None).map_err(|_| full)
     }
 }

@@ -31,7 +31,7 @@
 /**
  * Words of eight bytes of a cede_approach.
  */
-#define CEDE_APPROACH_WORDS 256
+#define CEDE_APPROACH_WORDS 240
 
 /**
  * Braking in m/s^2 that is commanded when the approach cannot be used: nothing is known of its contract then.
@@ -56,12 +56,12 @@
 /**
  * Most paths of a junction.
  */
-#define CEDE_MAX_PATHS 16
+#define CEDE_MAX_PATHS 12
 
 /**
  * Most points of all its paths.
  */
-#define CEDE_MAX_POINTS 256
+#define CEDE_MAX_POINTS 192
 
 /**
  * The first so many paths can be entered by the ego.
@@ -81,12 +81,12 @@
 /**
  * Words of eight bytes of a cede_junction.
  */
-#define CEDE_JUNCTION_WORDS 1088
+#define CEDE_JUNCTION_WORDS 832
 
 /**
  * Most tracks of an observation.
  */
-#define CEDE_MAX_TRACKS 32
+#define CEDE_MAX_TRACKS 24
 
 /**
  * Most paths between which a track may be undecided.

@@ -11,11 +11,11 @@ use crate::observation::{Seen, cede_observation};
 use crate::policy::cede_policy;
 use crate::status::cede_status;
 use cede_controller::{
-    Approach, Crosser, Decision, EnterError, Instant, Leader, NotReady, PathId, TrafficContext,
+    Approach, Crosser, EnterError, Instant, Leader, NotReady, PathId, TrafficContext,
 };
 
 /// Words of eight bytes of a cede_approach.
-pub const CEDE_APPROACH_WORDS: usize = 256;
+pub const CEDE_APPROACH_WORDS: usize = 240;
 
 /// One vehicle on its way through one junction: plan, precedence and tracks. The next junction begins with a new one. It
 /// refers to its junction and to its policy's weights.
@@ -115,7 +115,7 @@ unsafe fn enter(
             junction,
             seal: seal_of(junction)?,
         };
-        Ok(make(approach, || entered)?)
+        Ok(make(approach, |place| _ = place.write(entered))?)
     }
 }
 
@@ -145,23 +145,16 @@ unsafe fn decide(
     checked(decision)?;
     // SAFETY: by the header's contract of pointers.
     unsafe {
-        let (seen, wrong) = match Seen::read(observation) {
-            Ok(seen) => (seen, Ok(())),
-            Err(status) => (Seen::untrusted(), Err(status)),
-        };
+        let mut seen = Seen::nothing();
+        let read = seen.copy(observation);
+        let now = Instant::from_micros(now_us);
         let decided = with(approach, |approach| {
-            step(approach, Instant::from_micros(now_us), &seen)
+            approach.decide(now, &seen.observation())
         });
         let result = decided.as_ref().map_or(cede_decision::NONE, Into::into);
         write(decision, result)?;
-        decided.and(wrong)
+        decided.and(read)
     }
-}
-
-// Not inlined: its stack is not on top of the copies.
-#[inline(never)]
-fn step(approach: &mut Approach<'static, 'static>, now: Instant, seen: &Seen) -> Decision {
-    approach.decide(now, &seen.observation())
 }
 
 /// Whether a plan is safe before control is handed over. CEDE_STATUS_OK, CEDE_STATUS_NOT_READY_FAULT or
@@ -185,7 +178,8 @@ unsafe fn ready(
 ) -> Result<(), cede_status> {
     // SAFETY: by the header's contract of pointers.
     unsafe {
-        let seen = Seen::read(observation)?;
+        let mut seen = Seen::nothing();
+        seen.copy(observation)?;
         let approach = &current(approach)?.approach;
         let ready = approach.ready(Instant::from_micros(now_us), &seen.observation());
         let (status, told) = explained(ready);
@@ -244,7 +238,8 @@ unsafe fn propose(
     checked(acceleration)?;
     // SAFETY: by the header's contract of pointers.
     unsafe {
-        let seen = Seen::read(observation)?;
+        let mut seen = Seen::nothing();
+        seen.copy(observation)?;
         let proposal = with(approach, |approach| approach.proposal(&seen.observation()))?;
         write(acceleration, proposal)
     }
@@ -318,9 +313,8 @@ pub unsafe extern "C" fn cede_approach_set_traffic(
 ) -> cede_status {
     // SAFETY: the header's contract of pointers.
     unsafe {
-        read(traffic).and_then(|traffic| {
-            with(approach, |approach| approach.set_traffic((&traffic).into()))
-        })
+        read(traffic)
+            .and_then(|traffic| with(approach, |approach| approach.set_traffic((&traffic).into())))
     }
     .into()
 }

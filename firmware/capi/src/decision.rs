@@ -435,15 +435,27 @@ pub(crate) const CAUSE: &[(u8, &CStr)] = &[
 
 pub(crate) const ACTION: &[(u8, &CStr)] = &[
     (cede_action::None as u8, c"none"),
-    (cede_action::Nearest as u8, c"the nearest acceleration that is safe"),
-    (cede_action::Remembered as u8, c"the next command of the remembered plan"),
+    (
+        cede_action::Nearest as u8,
+        c"the nearest acceleration that is safe",
+    ),
+    (
+        cede_action::Remembered as u8,
+        c"the next command of the remembered plan",
+    ),
     (cede_action::Other as u8, c"other"),
 ];
 
 pub(crate) const REASON: &[(u8, &CStr)] = &[
     (cede_reason_kind::None as u8, c"none"),
-    (cede_reason_kind::Arrival as u8, c"the other may arrive before the zone is clear"),
-    (cede_reason_kind::Entry as u8, c"the gap to the other on entry is too small"),
+    (
+        cede_reason_kind::Arrival as u8,
+        c"the other may arrive before the zone is clear",
+    ),
+    (
+        cede_reason_kind::Entry as u8,
+        c"the gap to the other on entry is too small",
+    ),
     (cede_reason_kind::Stop as u8, c"too near to stop"),
     (cede_reason_kind::Other as u8, c"other"),
 ];
@@ -451,10 +463,22 @@ pub(crate) const REASON: &[(u8, &CStr)] = &[
 pub(crate) const FAULT: &[(u8, &CStr)] = &[
     (cede_fault_kind::None as u8, c"none"),
     (cede_fault_kind::NoPlan as u8, c"no plan is safe"),
-    (cede_fault_kind::Input as u8, c"a number of the observation is out of its range"),
-    (cede_fault_kind::Backwards as u8, c"the time of the call is before that of the last one"),
-    (cede_fault_kind::OffPeriod as u8, c"the last call was not one period ago"),
-    (cede_fault_kind::Proposal as u8, c"the proposed acceleration is not a finite number"),
+    (
+        cede_fault_kind::Input as u8,
+        c"a number of the observation is out of its range",
+    ),
+    (
+        cede_fault_kind::Backwards as u8,
+        c"the time of the call is before that of the last one",
+    ),
+    (
+        cede_fault_kind::OffPeriod as u8,
+        c"the last call was not one period ago",
+    ),
+    (
+        cede_fault_kind::Proposal as u8,
+        c"the proposed acceleration is not a finite number",
+    ),
     (cede_fault_kind::Other as u8, c"other"),
 ];
 
@@ -471,8 +495,14 @@ pub(crate) const FIELD: &[(u8, &CStr)] = &[
     (cede_field::Speed as u8, c"speed (m/s)"),
     (cede_field::Position as u8, c"coordinate (m)"),
     (cede_field::Direction as u8, c"length of the direction"),
-    (cede_field::Offset as u8, c"distance (m) of the pose from its place on the path"),
-    (cede_field::Heading as u8, c"cosine of the angle to the path"),
+    (
+        cede_field::Offset as u8,
+        c"distance (m) of the pose from its place on the path",
+    ),
+    (
+        cede_field::Heading as u8,
+        c"cosine of the angle to the path",
+    ),
     (cede_field::Path as u8, c"path of this class"),
     (cede_field::Number as u8, c"number that is there twice"),
     (cede_field::Other as u8, c"other"),
@@ -481,6 +511,9 @@ pub(crate) const FIELD: &[(u8, &CStr)] = &[
 pub(crate) const BREACH: &[(u8, &CStr)] = &[
     (cede_breach::None as u8, c"none"),
     (cede_breach::Ego as u8, c"the ego deviated from the command"),
-    (cede_breach::Track as u8, c"a track exceeds the contract's motion bounds"),
+    (
+        cede_breach::Track as u8,
+        c"a track exceeds the contract's motion bounds",
+    ),
     (cede_breach::Other as u8, c"other"),
 ];

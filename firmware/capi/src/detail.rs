@@ -60,9 +60,7 @@ pub(crate) unsafe fn told(
     result: Result<(), cede_detail>,
     detail: *mut cede_detail,
 ) -> cede_status {
-    let what = result
-        .err()
-        .unwrap_or(cede_detail::new(cede_status::Ok));
+    let what = result.err().unwrap_or(cede_detail::new(cede_status::Ok));
     // SAFETY: by the caller's contract.
     let offered = unsafe { offer(detail, what) };
     match what.status {

@@ -56,6 +56,8 @@ unsafe fn init(
             CEDE_PART_OTHER => Part::Other,
             _ => return Err(cede_status::UnknownChoice.into()),
         };
-        Ok(make(drive, || Drive::new(policy, contract, part))?)
+        Ok(make(drive, |place| {
+            _ = place.write(Drive::new(policy, contract, part))
+        })?)
     }
 }

@@ -13,11 +13,12 @@ use cede_controller::{
     Route, RouteConflict, RouteError, Zone,
 };
 use core::ffi::CStr;
+use core::mem::MaybeUninit;
 
 /// Most paths of a junction.
-pub const CEDE_MAX_PATHS: usize = 16;
+pub const CEDE_MAX_PATHS: usize = 12;
 /// Most points of all its paths.
-pub const CEDE_MAX_POINTS: usize = 256;
+pub const CEDE_MAX_POINTS: usize = 192;
 /// The first so many paths can be entered by the ego.
 pub const CEDE_MAX_ENTRIES: usize = 3;
 /// Most points of one route, before those that lie on a straight line are left out.
@@ -28,7 +29,7 @@ pub const CEDE_MAX_ZONES: usize = 3;
 const _: () = assert!(CEDE_MAX_ZONES == cede_controller::junction::zone::MAX_ZONES);
 
 /// Words of eight bytes of a cede_junction.
-pub const CEDE_JUNCTION_WORDS: usize = 1088;
+pub const CEDE_JUNCTION_WORDS: usize = 832;
 
 /// A junction: its paths, and how each two of them meet. Once built it does not change; it stays where it is for as long
 /// as an approach through it is used.
@@ -54,6 +55,17 @@ pub(crate) struct Site {
 }
 
 impl Site {
+    // Not inlined, and written to at once: it is large, and not to be on the stack.
+    #[inline(never)]
+    fn begin(place: &mut MaybeUninit<Self>) {
+        let place = place.as_mut_ptr();
+        // SAFETY: fields of the place.
+        unsafe {
+            (&raw mut (*place).builder).write(Builder::new());
+            (&raw mut (*place).built).write(core::ptr::null());
+        }
+    }
+
     /// The junction.
     ///
     /// # Safety
@@ -173,12 +185,8 @@ pub struct cede_conflict {
 /// Begins a junction without paths, whatever was in the storage.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cede_junction_init(junction: *mut cede_junction) -> cede_status {
-    let site = || Site {
-        builder: Builder::new(),
-        built: core::ptr::null(),
-    };
     // SAFETY: the header's contract of pointers.
-    unsafe { make(junction, site) }.into()
+    unsafe { make(junction, Site::begin) }.into()
 }
 
 /// Sets how far (m) any point of a vehicle's footprint may be from where it is on its path, in [0, 1]; 0.1 unless it is set.
@@ -441,7 +449,10 @@ fn of(footprint: cede_footprint) -> Footprint {
 }
 
 fn described(path: &Path, length: f32) -> cede_path_info {
-    let Footprint { length: long, width } = path.footprint();
+    let Footprint {
+        length: long,
+        width,
+    } = path.footprint();
     cede_path_info {
         length,
         line: path.line(),

@@ -6,6 +6,7 @@
 
 use crate::memory::checked;
 use crate::status::cede_status;
+use core::mem::MaybeUninit;
 use core::sync::atomic::{Ordering, compiler_fence};
 
 /// A type of the header that is storage for an object.
@@ -35,13 +36,13 @@ const WORD: usize = size_of::<u32>();
 /// The kind of an object that is being worked on, or that never was one.
 const NONE: u32 = 0;
 
-/// Makes an object, whatever was there.
+/// Makes an object, whatever was there: `begin` fills its place.
 ///
 /// # Safety
-/// A pointer that is neither null nor misaligned points to storage that nobody else uses during the call.
+/// `begin` writes a value to the place. A pointer that is neither null nor misaligned points to storage that nobody else uses during the call.
 pub(crate) unsafe fn make<S: Storage>(
     storage: *mut S,
-    value: impl FnOnce() -> S::Value,
+    begin: impl FnOnce(&mut MaybeUninit<S::Value>),
 ) -> Result<(), cede_status> {
     let () = S::FITS;
     checked(storage)?;
@@ -49,7 +50,7 @@ pub(crate) unsafe fn make<S: Storage>(
     // SAFETY: the storage is there by the caller's contract, and large enough.
     unsafe {
         unseal(object);
-        (&raw mut (*object).value).write(value());
+        begin(&mut *(&raw mut (*object).value).cast());
         seal::<S>(object);
     }
     Ok(())
@@ -59,9 +60,7 @@ pub(crate) unsafe fn make<S: Storage>(
 ///
 /// # Safety
 /// As [`make`]; besides, nobody makes or changes the object as long as `'a`.
-pub(crate) unsafe fn lend<'a, S: Storage>(
-    storage: *const S,
-) -> Result<&'a S::Value, cede_status> {
+pub(crate) unsafe fn lend<'a, S: Storage>(storage: *const S) -> Result<&'a S::Value, cede_status> {
     // SAFETY: by the caller's contract.
     let object = unsafe { verified(storage) }?;
     // SAFETY: its bytes are those of a value that was written here.
@@ -110,9 +109,7 @@ pub(crate) unsafe fn seal_of<S: Storage>(storage: *const S) -> Result<u32, cede_
 }
 
 /// The object in the storage, if it is one and nothing has changed it.
-unsafe fn verified<S: Storage>(
-    storage: *const S,
-) -> Result<*const Object<S::Value>, cede_status> {
+unsafe fn verified<S: Storage>(storage: *const S) -> Result<*const Object<S::Value>, cede_status> {
     let () = S::FITS;
     // SAFETY: by the caller's contract.
     let seal = unsafe { seal_of(storage) }?;

@@ -4,9 +4,10 @@ use crate::memory::{Plain, read, slice};
 use crate::status::cede_status;
 use cede_controller::geometry::unit;
 use cede_controller::{Class, MAX_CANDIDATES, Observation, PathId, Point, Pose, Track, Vehicle};
+use heapless::Vec;
 
 /// Most tracks of an observation.
-pub const CEDE_MAX_TRACKS: usize = 32;
+pub const CEDE_MAX_TRACKS: usize = 24;
 /// Most paths between which a track may be undecided.
 pub const CEDE_MAX_CANDIDATES: usize = 4;
 
@@ -104,56 +105,50 @@ unsafe impl Plain for cede_track {}
 // SAFETY: numbers and a pointer, which is checked before it is used.
 unsafe impl Plain for cede_observation {}
 
-/// An observation of one's own: a copy of the caller's.
+/// An observation of one's own: a copy of the caller's. It is large, so there is one, and it is filled where it is.
 pub(crate) struct Seen {
     ego: Vehicle,
-    tracks: [Track; CEDE_MAX_TRACKS],
-    count: usize,
+    tracks: Vec<Track, CEDE_MAX_TRACKS>,
 }
 
 impl Seen {
-    /// A copy of what is observed.
+    /// What cannot be trusted: the controller carries on with its plan.
+    pub(crate) fn nothing() -> Self {
+        let nowhere = cede_vehicle {
+            s: f32::NAN,
+            ..cede_vehicle::default()
+        };
+        Self {
+            ego: vehicle(&nowhere),
+            tracks: Vec::new(),
+        }
+    }
+
+    /// Becomes a copy of what is observed; remains nothing if that cannot be read.
     ///
     /// # Safety
     /// As [`read`] and [`slice`], of the tracks as well.
-    // Its result is large: it fills the caller's.
-    #[inline(never)]
-    pub(crate) unsafe fn read(observation: *const cede_observation) -> Result<Self, cede_status> {
+    pub(crate) unsafe fn copy(
+        &mut self,
+        observation: *const cede_observation,
+    ) -> Result<(), cede_status> {
         // SAFETY: by the caller's contract.
-        let seen = unsafe { read(observation) }?;
-        if seen.track_count as usize > CEDE_MAX_TRACKS {
-            return Err(cede_status::TooManyTracks);
+        let (seen, tracks) = unsafe {
+            let seen = read(observation)?;
+            (seen, slice(seen.tracks, seen.track_count)?)
+        };
+        for given in tracks {
+            let known = self.tracks.push(track(given)?);
+            known.map_err(|_| cede_status::TooManyTracks)?;
         }
-        // SAFETY: by the caller's contract.
-        let tracks = unsafe { slice(seen.tracks, seen.track_count) }?;
-        let mut copy = Self::of_nobody(vehicle(&seen.ego));
-        for (place, given) in copy.tracks.iter_mut().zip(tracks) {
-            *place = track(given)?;
-            copy.count += 1;
-        }
-        Ok(copy)
-    }
-
-    /// What cannot be trusted: the controller carries on with its plan.
-    pub(crate) fn untrusted() -> Self {
-        Self::of_nobody(vehicle(&cede_vehicle {
-            s: f32::NAN,
-            ..cede_vehicle::default()
-        }))
-    }
-
-    fn of_nobody(ego: Vehicle) -> Self {
-        Self {
-            ego,
-            tracks: [Track::on(0, PathId::new(0), ego); CEDE_MAX_TRACKS],
-            count: 0,
-        }
+        self.ego = vehicle(&seen.ego);
+        Ok(())
     }
 
     pub(crate) fn observation(&self) -> Observation<'_> {
         Observation {
             ego: self.ego,
-            tracks: self.tracks.get(..self.count).unwrap_or(&[]),
+            tracks: &self.tracks,
         }
     }
 }

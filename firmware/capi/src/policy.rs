@@ -74,7 +74,7 @@ unsafe fn keep(policy: *mut cede_policy, words: &'static [u32]) -> Result<(), ce
         words,
     };
     // SAFETY: by the header's contract of pointers.
-    unsafe { make(policy, || held) }
+    unsafe { make(policy, |place| _ = place.write(held)) }
 }
 
 /// Makes a policy of the weights that are part of the library.

@@ -104,39 +104,138 @@ pub(crate) const STATUS: &[(i32, &CStr)] = &[
     (cede_status::Ok as i32, c"done"),
     (cede_status::NullPointer as i32, c"a pointer is null"),
     (cede_status::Misaligned as i32, c"a pointer is misaligned"),
-    (cede_status::NotInitialised as i32, c"not an object of this kind: never initialised, moved, or in use"),
-    (cede_status::Corrupt as i32, c"the object's bytes have changed between two calls"),
-    (cede_status::Stale as i32, c"the junction of this approach has been initialised anew"),
-    (cede_status::TooLarge as i32, c"an array is larger than memory"),
-    (cede_status::UnknownChoice as i32, c"a numbered choice has a number that is none"),
+    (
+        cede_status::NotInitialised as i32,
+        c"not an object of this kind: never initialised, moved, or in use",
+    ),
+    (
+        cede_status::Corrupt as i32,
+        c"the object's bytes have changed between two calls",
+    ),
+    (
+        cede_status::Stale as i32,
+        c"the junction of this approach has been initialised anew",
+    ),
+    (
+        cede_status::TooLarge as i32,
+        c"an array is larger than memory",
+    ),
+    (
+        cede_status::UnknownChoice as i32,
+        c"a numbered choice has a number that is none",
+    ),
     (cede_status::TooManyTracks as i32, c"too many tracks"),
-    (cede_status::CandidateCount as i32, c"a track without a candidate, or with too many"),
-    (cede_status::WeightsMagic as i32, c"not a weights file: it does not begin with CEDE"),
-    (cede_status::WeightsChecksum as i32, c"the weights' checksum does not fit: they are damaged"),
-    (cede_status::WeightsUnknown as i32, c"a version, feature set or perspective of weights that is not known"),
-    (cede_status::WeightsShape as i32, c"the weights' layers do not fit their length or the limits"),
-    (cede_status::WeightsOutOfRange as i32, c"a weight is not finite or too large"),
-    (cede_status::WeightsNotEmbedded as i32, c"built without the embedded policy"),
-    (cede_status::ContractOutOfRange as i32, c"a number of the contract is out of its range"),
-    (cede_status::RouteTooFewPoints as i32, c"a route needs two points that are apart"),
-    (cede_status::RouteTooManyPoints as i32, c"more points than a route may have"),
-    (cede_status::RouteOutOfRange as i32, c"a coordinate is not a number or too far from the origin"),
-    (cede_status::JunctionNoPaths as i32, c"a junction without paths"),
-    (cede_status::JunctionTooManyPaths as i32, c"more paths than a junction has room for"),
-    (cede_status::JunctionTooManyPoints as i32, c"more points than a junction has room for"),
-    (cede_status::JunctionUnknownPath as i32, c"there is no such path"),
-    (cede_status::JunctionFootprint as i32, c"a side of a footprint is out of its range"),
-    (cede_status::JunctionTolerance as i32, c"the tolerance is out of its range"),
-    (cede_status::JunctionKink as i32, c"a path turns by more than 90 degrees in one point"),
+    (
+        cede_status::CandidateCount as i32,
+        c"a track without a candidate, or with too many",
+    ),
+    (
+        cede_status::WeightsMagic as i32,
+        c"not a weights file: it does not begin with CEDE",
+    ),
+    (
+        cede_status::WeightsChecksum as i32,
+        c"the weights' checksum does not fit: they are damaged",
+    ),
+    (
+        cede_status::WeightsUnknown as i32,
+        c"a version, feature set or perspective of weights that is not known",
+    ),
+    (
+        cede_status::WeightsShape as i32,
+        c"the weights' layers do not fit their length or the limits",
+    ),
+    (
+        cede_status::WeightsOutOfRange as i32,
+        c"a weight is not finite or too large",
+    ),
+    (
+        cede_status::WeightsNotEmbedded as i32,
+        c"built without the embedded policy",
+    ),
+    (
+        cede_status::ContractOutOfRange as i32,
+        c"a number of the contract is out of its range",
+    ),
+    (
+        cede_status::RouteTooFewPoints as i32,
+        c"a route needs two points that are apart",
+    ),
+    (
+        cede_status::RouteTooManyPoints as i32,
+        c"more points than a route may have",
+    ),
+    (
+        cede_status::RouteOutOfRange as i32,
+        c"a coordinate is not a number or too far from the origin",
+    ),
+    (
+        cede_status::JunctionNoPaths as i32,
+        c"a junction without paths",
+    ),
+    (
+        cede_status::JunctionTooManyPaths as i32,
+        c"more paths than a junction has room for",
+    ),
+    (
+        cede_status::JunctionTooManyPoints as i32,
+        c"more points than a junction has room for",
+    ),
+    (
+        cede_status::JunctionUnknownPath as i32,
+        c"there is no such path",
+    ),
+    (
+        cede_status::JunctionFootprint as i32,
+        c"a side of a footprint is out of its range",
+    ),
+    (
+        cede_status::JunctionTolerance as i32,
+        c"the tolerance is out of its range",
+    ),
+    (
+        cede_status::JunctionKink as i32,
+        c"a path turns by more than 90 degrees in one point",
+    ),
     (cede_status::JunctionTooLong as i32, c"a path is too long"),
-    (cede_status::JunctionReturns as i32, c"a path comes back to itself"),
-    (cede_status::JunctionLine as i32, c"a line is not on its path"),
-    (cede_status::JunctionRightOfWay as i32, c"a path with the right of way over itself"),
-    (cede_status::JunctionNotBuilt as i32, c"the junction is not built yet"),
-    (cede_status::JunctionBuilt as i32, c"the junction is built: nothing can be added"),
-    (cede_status::EnterPath as i32, c"the junction has no such path to enter by"),
-    (cede_status::EnterPositionError as i32, c"position_error is too large for a lane that the ego shares"),
-    (cede_status::NotReadyFault as i32, c"not ready: the ego's state cannot be trusted"),
-    (cede_status::NotReadyNoPlan as i32, c"not ready: no plan is safe"),
-    (cede_status::Other as i32, c"what this version has no number for"),
+    (
+        cede_status::JunctionReturns as i32,
+        c"a path comes back to itself",
+    ),
+    (
+        cede_status::JunctionLine as i32,
+        c"a line is not on its path",
+    ),
+    (
+        cede_status::JunctionRightOfWay as i32,
+        c"a path with the right of way over itself",
+    ),
+    (
+        cede_status::JunctionNotBuilt as i32,
+        c"the junction is not built yet",
+    ),
+    (
+        cede_status::JunctionBuilt as i32,
+        c"the junction is built: nothing can be added",
+    ),
+    (
+        cede_status::EnterPath as i32,
+        c"the junction has no such path to enter by",
+    ),
+    (
+        cede_status::EnterPositionError as i32,
+        c"position_error is too large for a lane that the ego shares",
+    ),
+    (
+        cede_status::NotReadyFault as i32,
+        c"not ready: the ego's state cannot be trusted",
+    ),
+    (
+        cede_status::NotReadyNoPlan as i32,
+        c"not ready: no plan is safe",
+    ),
+    (
+        cede_status::Other as i32,
+        c"what this version has no number for",
+    ),
 ];
