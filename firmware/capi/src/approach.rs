@@ -6,7 +6,7 @@ use crate::detail::{cede_detail, told};
 use crate::drive::cede_drive;
 use crate::junction::cede_junction;
 use crate::memory::{Plain, checked, offer, read, write};
-use crate::object::{Storage, change, lend, make, seal_of};
+use crate::object::{Storage, change, lend, seal_of, store};
 use crate::observation::{Seen, cede_observation};
 use crate::policy::cede_policy;
 use crate::status::cede_status;
@@ -115,7 +115,7 @@ unsafe fn enter(
             junction,
             seal: seal_of(junction)?,
         };
-        Ok(make(approach, |place| _ = place.write(entered))?)
+        Ok(store(approach, entered)?)
     }
 }
 

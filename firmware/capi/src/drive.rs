@@ -2,7 +2,7 @@
 
 use crate::contract::{cede_contract, checked_contract};
 use crate::detail::{cede_detail, told};
-use crate::object::{Storage, lend, make};
+use crate::object::{Storage, lend, store};
 use crate::policy::cede_policy;
 use crate::status::cede_status;
 use cede_controller::{Drive, Part};
@@ -56,8 +56,6 @@ unsafe fn init(
             CEDE_PART_OTHER => Part::Other,
             _ => return Err(cede_status::UnknownChoice.into()),
         };
-        Ok(make(drive, |place| {
-            _ = place.write(Drive::new(policy, contract, part))
-        })?)
+        Ok(store(drive, Drive::new(policy, contract, part))?)
     }
 }

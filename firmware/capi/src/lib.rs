@@ -22,6 +22,7 @@ mod junction;
 mod memory;
 mod object;
 mod observation;
+mod planted;
 mod policy;
 mod status;
 mod text;

@@ -56,6 +56,22 @@ pub(crate) unsafe fn make<S: Storage>(
     Ok(())
 }
 
+/// Makes an object of a value that is small enough to be copied.
+///
+/// # Safety
+/// As [`make`].
+pub(crate) unsafe fn store<S: Storage>(
+    storage: *mut S,
+    value: S::Value,
+) -> Result<(), cede_status> {
+    // SAFETY: by the caller's contract, and the place is written to.
+    unsafe {
+        make(storage, |place| {
+            place.write(value);
+        })
+    }
+}
+
 /// The value of an object.
 ///
 /// # Safety

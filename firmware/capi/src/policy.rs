@@ -1,7 +1,7 @@
 //! A policy: weights that were checked, where they lie.
 
 use crate::memory::{checked, slice, write};
-use crate::object::{Storage, lend, make};
+use crate::object::{Storage, lend, store};
 use crate::status::cede_status;
 use cede_controller::{FeatureSet, Perspective, Policy, WeightsError};
 
@@ -74,7 +74,7 @@ unsafe fn keep(policy: *mut cede_policy, words: &'static [u32]) -> Result<(), ce
         words,
     };
     // SAFETY: by the header's contract of pointers.
-    unsafe { make(policy, |place| _ = place.write(held)) }
+    unsafe { store(policy, held) }
 }
 
 /// Makes a policy of the weights that are part of the library.

@@ -16,6 +16,7 @@ pub const CEDE_ALIGNMENT: u32 = 8;
 /// The library's CEDE_ABI_VERSION.
 #[unsafe(no_mangle)]
 pub extern "C" fn cede_abi_version() -> u32 {
+    crate::planted::fault();
     CEDE_ABI_VERSION
 }
 

@@ -12,9 +12,9 @@ fn flipped<const N: usize>(storage: *mut [u64; N], mut ask: impl FnMut() -> cede
     for word in 0..N {
         let mut found = 0;
         for bit in 0..64 {
-            // SAFETY: a word of the storage, which nobody else uses now.
-            let flip = |storage: *mut [u64; N]| unsafe {
-                (&raw mut (*storage)[word]).write((&raw const (*storage)[word]).read() ^ (1 << bit))
+            let flip = |storage: *mut [u64; N]| {
+                // SAFETY: a word of the storage, which nobody else uses now.
+                unsafe { (*storage)[word] ^= 1 << bit };
             };
             flip(storage);
             let status = ask();
@@ -176,7 +176,7 @@ fn a_junction_tells_what_it_is() {
         assert_eq!(conflict.kind, cede_conflict_kind::Crossing);
         assert_eq!(conflict.right, cede_right::Other);
         assert!(conflict.zone_count >= 1);
-        assert!(conflict.zones[0].ego_from < conflict.ego_conflict);
+        assert!(conflict.zones[0].ego_from < conflict.zones[0].ego_to);
         let mut info: cede_path_info = std::mem::zeroed();
         assert_eq!(cede_junction_path(&world.junction, oncoming, &mut info), OK);
         assert_eq!((info.length, info.vehicle_class), (80.0, CEDE_CLASS_CAR));
