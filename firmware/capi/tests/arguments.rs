@@ -375,7 +375,8 @@ fn what_is_refused_is_named() {
 #[test]
 fn each_contract_field_has_the_name_that_the_controller_gives_it() {
     let known = worst_case();
-    let spoil: [(&str, fn(&mut cede_contract)); 18] = [
+    type Spoil = fn(&mut cede_contract);
+    let spoil: [(&str, Spoil); 18] = [
         ("period", |c| c.period = f32::NAN),
         ("latency", |c| c.latency = f32::NAN),
         ("jitter", |c| c.jitter = f32::NAN),
