@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# The C library: header, tests, the C examples on the host (also under sanitizers) and on a Cortex-M4F under QEMU, where
-# they must print the same; no panic, no allocation, no function of a C library in it, and nothing global but the interface.
-# Shows as well that a planted fault of each kind is found. Needs what firmware/setup.sh sets up; firmware/check.sh calls it.
+# The C library: header, tests, the C examples on the host (also under sanitizers) and on Cortex-M4F, M7 and M33F under
+# QEMU, where they must print the same; no panic, no allocation, no function of a C library in it, and nothing global
+# but the interface. Shows as well that a planted fault of each kind is found.
+# Needs what firmware/setup.sh sets up; firmware/check.sh calls it.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 build=$PWD/.build/capi
@@ -68,31 +69,42 @@ sed -i 1d "$build/planted/interface"
 others planted >/dev/null || fail "a symbol that is not in the interface is not found"
 echo "a planted panic, allocation, mathematical function and symbol are found"
 
-echo "== C library on the Cortex-M4F (mps2-an386)"
+echo "== C library on the target"
 library m4f
 for wrong in undefined panics allocations mathematical others; do
     ! $wrong m4f || fail "$wrong: not to be in the library"
 done
-cpu="-mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard"
-for program in first crossing; do
-    # shellcheck disable=SC2086
-    arm-none-eabi-gcc -std=c99 -O2 -Wall -Wextra -Wpedantic -Werror -ffp-contract=off $cpu -ffreestanding \
-        -fno-tree-loop-distribute-patterns -ffunction-sections -fdata-sections -DMEASURE -I$capi/include -I$examples \
-        $examples/$program.c $examples/text.c $examples/cortex-m/start.c "$build/m4f/libcede.a" -nostdlib \
-        -Wl,--gc-sections,-z,noexecstack,--wrap=cede_approach_decide -T $examples/cortex-m/mps2.ld \
-        -o "$build/m4f/$program.elf"
-    status=0
-    timeout 120 qemu-system-arm -machine mps2-an386 -nographic -icount shift=10 -semihosting-config enable=on,target=native \
-        -kernel "$build/m4f/$program.elf" </dev/null >"$build/m4f/$program.txt" || status=$?
-    [ $status = 0 ] || { cat "$build/m4f/$program.txt" >&2; fail "$program on the target: status $status"; }
-    grep -v '^measured: ' "$build/m4f/$program.txt" | cmp - "$build/plain/$program.txt" || fail "$program prints something else"
-    value() { sed -n "s/^measured: $1: //p" "$build/m4f/$program.txt"; }
-    flash=$(arm-none-eabi-size "$build/m4f/$program.elf" | awk 'NR == 2 { print $1 + $2 }')
-    ram=$(value "RAM with stack, bytes")
-    instructions=$(value "instructions of a decision, most")
-    echo "$program: as on the host; flash $flash, RAM $ram, of it stack $(value "stack, bytes") bytes;" \
-        "a decision takes up to $instructions instructions"
-    [ "$flash" -le $max_flash ] || fail "more than $max_flash bytes of flash"
-    [ "$ram" -le $max_ram ] || fail "more than $max_ram bytes of RAM"
-    [ "$instructions" -le $max_instructions ] || fail "more than $max_instructions instructions"
-done
+
+# on NAME MACHINE CORE FPU TICK [linker's options]: the examples print there what they print on the host, within the bars.
+# The library is the same one; TICK is what the machine's clock takes for a tick, in ns.
+on() {
+    local name=$1 machine=$2 core=$3 fpu=$4 tick=$5 program status flash ram instructions
+    shift 5
+    mkdir -p "$build/$name"
+    for program in first crossing; do
+        arm-none-eabi-gcc -std=c99 -O2 -Wall -Wextra -Wpedantic -Werror -ffp-contract=off -mthumb -mcpu="$core" \
+            -mfpu="$fpu" -mfloat-abi=hard -ffreestanding -fno-tree-loop-distribute-patterns -ffunction-sections \
+            -fdata-sections -DTICK_NS="$tick" -I$capi/include -I$examples $examples/$program.c $examples/text.c \
+            $examples/cortex-m/start.c "$build/m4f/libcede.a" -nostdlib -T $examples/cortex-m/mps2.ld \
+            -Wl,--gc-sections,-z,noexecstack,--wrap=cede_approach_decide "$@" -o "$build/$name/$program.elf"
+        status=0
+        timeout 120 qemu-system-arm -machine "$machine" -nographic -icount shift=10 \
+            -semihosting-config enable=on,target=native -kernel "$build/$name/$program.elf" \
+            </dev/null >"$build/$name/$program.txt" || status=$?
+        [ $status = 0 ] || { cat "$build/$name/$program.txt" >&2; fail "$program on $name: status $status"; }
+        grep -v '^measured: ' "$build/$name/$program.txt" | cmp - "$build/plain/$program.txt" ||
+            fail "$program on $name prints something else"
+        measured() { sed -n "s/^measured: $1: //p" "$build/$name/$program.txt"; }
+        flash=$(arm-none-eabi-size "$build/$name/$program.elf" | awk 'NR == 2 { print $1 + $2 }')
+        ram=$(measured "RAM with stack, bytes")
+        instructions=$(measured "instructions of a decision, most")
+        echo "$name, $program: as on the host; flash $flash, RAM $ram, of it stack $(measured "stack, bytes") bytes;" \
+            "a decision takes up to $instructions instructions"
+        [ "$flash" -le $max_flash ] || fail "more than $max_flash bytes of flash"
+        [ "$ram" -le $max_ram ] || fail "more than $max_ram bytes of RAM"
+        [ "$instructions" -le $max_instructions ] || fail "more than $max_instructions instructions"
+    done
+}
+on m4f mps2-an386 cortex-m4 fpv4-sp-d16 40
+on m7 mps2-an500 cortex-m7 fpv5-sp-d16 40
+on m33f mps2-an505 cortex-m33 fpv5-sp-d16 50 -Wl,--defsym=flash_at=0x10000000,--defsym=ram_at=0x38000000

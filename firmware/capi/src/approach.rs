@@ -329,15 +329,27 @@ pub unsafe extern "C" fn cede_approach_forget(
     unsafe { with(approach, |approach| approach.forget(number)) }.into()
 }
 
+impl Entered {
+    /// Whether the junction is still the one that was entered.
+    ///
+    /// # Safety
+    /// The junction's storage is where it was.
+    unsafe fn is_current(&self) -> Result<(), cede_status> {
+        // SAFETY: by the caller's contract.
+        match unsafe { seal_of(self.junction) } {
+            Ok(seal) if seal == self.seal => Ok(()),
+            _ => Err(cede_status::Stale),
+        }
+    }
+}
+
 /// The approach, if its junction is still the one that it entered.
 unsafe fn current<'a>(approach: *const cede_approach) -> Result<&'a Entered, cede_status> {
     // SAFETY: by the header's contract of pointers.
     unsafe {
         let entered: &Entered = lend(approach)?;
-        match seal_of(entered.junction) {
-            Ok(seal) if seal == entered.seal => Ok(entered),
-            _ => Err(cede_status::Stale),
-        }
+        entered.is_current()?;
+        Ok(entered)
     }
 }
 
@@ -348,9 +360,11 @@ unsafe fn with<R>(
 ) -> Result<R, cede_status> {
     // SAFETY: by the header's contract of pointers.
     unsafe {
-        current(approach)?;
-        change(approach, |entered| work(&mut entered.approach))
-    }
+        change(approach, |entered| {
+            entered.is_current()?;
+            Ok(work(&mut entered.approach))
+        })
+    }?
 }
 
 impl From<EnterError> for cede_detail {

@@ -133,15 +133,24 @@ impl Seen {
         observation: *const cede_observation,
     ) -> Result<(), cede_status> {
         // SAFETY: by the caller's contract.
-        let (seen, tracks) = unsafe {
-            let seen = read(observation)?;
-            (seen, slice(seen.tracks, seen.track_count)?)
-        };
+        let seen = unsafe { read(observation) }?;
+        if seen.track_count as usize > CEDE_MAX_TRACKS {
+            return Err(cede_status::TooManyTracks);
+        }
+        // SAFETY: by the caller's contract.
+        let copied = self.copy_tracks(unsafe { slice(seen.tracks, seen.track_count) }?);
+        match copied {
+            Ok(()) => self.ego = vehicle(&seen.ego),
+            Err(_) => self.tracks.clear(),
+        }
+        copied
+    }
+
+    fn copy_tracks(&mut self, tracks: &[cede_track]) -> Result<(), cede_status> {
         for given in tracks {
             let known = self.tracks.push(track(given)?);
             known.map_err(|_| cede_status::TooManyTracks)?;
         }
-        self.ego = vehicle(&seen.ego);
         Ok(())
     }
 

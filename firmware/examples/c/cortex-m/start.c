@@ -90,9 +90,9 @@ void *memset(void *to, int value, size_t count)
     return to;
 }
 
-#ifdef MEASURE
+#ifdef TICK_NS
 /*
- * Under QEMU's -icount shift=10 an instruction takes 1024 ns of the board's time, and a tick of its 25 MHz clock is 40 ns.
+ * Under QEMU's -icount shift=10 an instruction takes 1024 ns of the board's time; TICK_NS is what a tick of its clock takes.
  * The linker's --wrap puts this between the program and the library.
  */
 #define SYSTICK ((volatile uint32_t *)0xe000e010u)
@@ -115,7 +115,7 @@ cede_status __wrap_cede_approach_decide(cede_approach *approach, uint64_t now_us
     SYSTICK[2] = 0u;
     SYSTICK[0] = 5u;
     status = __real_cede_approach_decide(approach, now_us, observation, decision);
-    instructions = ((TICKS - SYSTICK[2]) * 40u) / 1024u;
+    instructions = ((TICKS - SYSTICK[2]) * TICK_NS) / 1024u;
     most_instructions = (instructions > most_instructions) ? instructions : most_instructions;
     return status;
 }
