@@ -17,7 +17,7 @@ variable=CARGO_TARGET_$(tr 'a-z-' 'A-Z_' <<<"$target")_RUSTFLAGS
 export "$variable=${bare_flags:-}"
 # As a static library alone: beside an rlib it would not be optimised as a whole.
 cargo rustc --lib --crate-type staticlib --release --locked --manifest-path "$here/Cargo.toml" --no-default-features \
-    --features embedded-policy --target "$target" --target-dir "$folder/../cargo" "$@" >&2
+    --features embedded-policy,core-sqrt --target "$target" --target-dir "$folder/../cargo" "$@" >&2
 
 # Of a static library C sees every symbol: Rust's memcpy and sqrtf, its panic handler, those of another Rust library.
 grep -oE '^[^#* /].*\bcede_[a-z0-9_]+\(' "$here/include/cede.h" | grep -oE 'cede_[a-z0-9_]+\($' | tr -d '(' | sort -u >"$folder/interface"
