@@ -75,22 +75,28 @@ for wrong in undefined panics allocations mathematical others; do
     ! $wrong m4f || fail "$wrong: not to be in the library"
 done
 
-# on NAME MACHINE CORE FPU TICK [linker's options]: the examples print there what they print on the host, within the bars.
+# run NAME MACHINE PROGRAM CORE FPU [options]: builds an example and runs it; its status is that of the example.
+run() {
+    local image=$build/$1/$3 machine=$2 program=$3 core=$4 fpu=$5
+    shift 5
+    arm-none-eabi-gcc -std=c99 -O2 -Wall -Wextra -Wpedantic -Werror -ffp-contract=off -mthumb -mcpu="$core" -mfpu="$fpu" \
+        -mfloat-abi=hard -ffreestanding -fno-tree-loop-distribute-patterns -ffunction-sections -fdata-sections \
+        -I$capi/include -I$examples $examples/"$program".c $examples/text.c $examples/cortex-m/start.c \
+        "$build/m4f/libcede.a" -nostdlib -T $examples/cortex-m/mps2.ld \
+        -Wl,--gc-sections,-z,noexecstack,--wrap=cede_approach_decide "$@" -o "$image.elf" || fail "$program does not link"
+    timeout 120 qemu-system-arm -machine "$machine" -nographic -icount shift=10 \
+        -semihosting-config enable=on,target=native -kernel "$image.elf" </dev/null >"$image.txt"
+}
+
+# on NAME MACHINE CORE FPU TICK [options]: the examples print there what they print on the host, within the bars.
 # The library is the same one; TICK is what the machine's clock takes for a tick, in ns.
 on() {
     local name=$1 machine=$2 core=$3 fpu=$4 tick=$5 program status flash ram instructions
     shift 5
     mkdir -p "$build/$name"
     for program in first crossing; do
-        arm-none-eabi-gcc -std=c99 -O2 -Wall -Wextra -Wpedantic -Werror -ffp-contract=off -mthumb -mcpu="$core" \
-            -mfpu="$fpu" -mfloat-abi=hard -ffreestanding -fno-tree-loop-distribute-patterns -ffunction-sections \
-            -fdata-sections -DTICK_NS="$tick" -I$capi/include -I$examples $examples/$program.c $examples/text.c \
-            $examples/cortex-m/start.c "$build/m4f/libcede.a" -nostdlib -T $examples/cortex-m/mps2.ld \
-            -Wl,--gc-sections,-z,noexecstack,--wrap=cede_approach_decide "$@" -o "$build/$name/$program.elf"
         status=0
-        timeout 120 qemu-system-arm -machine "$machine" -nographic -icount shift=10 \
-            -semihosting-config enable=on,target=native -kernel "$build/$name/$program.elf" \
-            </dev/null >"$build/$name/$program.txt" || status=$?
+        run "$name" "$machine" $program "$core" "$fpu" -DTICK_NS="$tick" "$@" || status=$?
         [ $status = 0 ] || { cat "$build/$name/$program.txt" >&2; fail "$program on $name: status $status"; }
         grep -v '^measured: ' "$build/$name/$program.txt" | cmp - "$build/plain/$program.txt" ||
             fail "$program on $name prints something else"
@@ -105,6 +111,13 @@ on() {
         [ "$instructions" -le $max_instructions ] || fail "more than $max_instructions instructions"
     done
 }
+mkdir -p "$build/mode"
+for mode in 0x00400000 0x00800000 0x00c00000 0x01000000; do # up, down, to zero; subnormal numbers flushed
+    status=0
+    run mode mps2-an386 crossing cortex-m4 fpv4-sp-d16 -DTICK_NS=40 -DFPSCR=${mode}u || status=$?
+    [ $status = 7 ] || fail "FPSCR $mode: status $status"
+done
+echo "each wrong mode of the FPU is found"
 on m4f mps2-an386 cortex-m4 fpv4-sp-d16 40
 on m7 mps2-an500 cortex-m7 fpv5-sp-d16 40
 on m33f mps2-an505 cortex-m33 fpv5-sp-d16 50 -Wl,--defsym=flash_at=0x10000000,--defsym=ram_at=0x38000000

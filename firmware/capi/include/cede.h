@@ -161,6 +161,10 @@ enum cede_status
      */
     CEDE_STATUS_TOO_LARGE = 6,
     /**
+     * The FPU does not round to nearest, or does not keep subnormal numbers.
+     */
+    CEDE_STATUS_FLOAT_ENVIRONMENT = 7,
+    /**
      * A numbered choice, as a class or a part, has a number that is none.
      */
     CEDE_STATUS_UNKNOWN_CHOICE = 10,
@@ -1536,6 +1540,12 @@ cede_status cede_policy_check(const struct cede_policy *policy);
  * What the policy is.
  */
 cede_status cede_policy_describe(const struct cede_policy *policy, struct cede_policy_info *info);
+
+/**
+ * Whether the FPU rounds to nearest and keeps subnormal numbers, as every decision assumes. To be called at start-up by the
+ * task that decides: the mode may differ from task to task. Takes no time to speak of.
+ */
+cede_status cede_self_test(void);
 
 /**
  * What a cede_status says; "unknown" for a number that is none. Never null.

@@ -21,6 +21,8 @@ pub enum cede_status {
     Stale = 5,
     /// An array is larger than memory.
     TooLarge = 6,
+    /// The FPU does not round to nearest, or does not keep subnormal numbers.
+    FloatEnvironment = 7,
 
     /// A numbered choice, as a class or a part, has a number that is none.
     UnknownChoice = 10,
@@ -119,6 +121,10 @@ pub(crate) const STATUS: &[(i32, &CStr)] = &[
     (
         cede_status::TooLarge as i32,
         c"an array is larger than memory",
+    ),
+    (
+        cede_status::FloatEnvironment as i32,
+        c"the FPU does not round to nearest, or does not keep subnormal numbers",
     ),
     (
         cede_status::UnknownChoice as i32,

@@ -187,9 +187,13 @@ int main(void)
     cede_status status = CEDE_STATUS_OTHER;
 
     if (cede_abi_version() == CEDE_ABI_VERSION) {
+        status = cede_self_test();
+    }
+    if (status == CEDE_STATUS_OK) {
         status = set_up(&detail);
     }
     if (status != CEDE_STATUS_OK) {
+        detail.status = status;
         put_refusal(&detail);
         return (int)status;
     }

@@ -150,6 +150,9 @@ __attribute__((noinline)) static uint32_t run(void)
     for (word = &bss_end; word < (uint32_t *)__builtin_frame_address(0) - 32; word++) {
         *word = PAINT;
     }
+#ifdef FPSCR /* another mode of the FPU, to see it found */
+    __asm__ volatile("vmsr fpscr, %0" ::"r"(FPSCR));
+#endif
     status = (uint32_t)main();
     word = &bss_end;
     while ((word < &stack_top) && (*word == PAINT)) {
