@@ -1431,10 +1431,10 @@ cede_status cede_drive_init(struct cede_drive *drive,
 cede_status cede_junction_init(struct cede_junction *junction);
 
 /**
- * Sets how far (m) any point of a vehicle's footprint may be from where it is on its path, in [0, 1]; 0.1 unless it is set.
+ * Sets how far (m) any point of a vehicle's footprint may be from where it is on its path, in [0, 1]; 0.1 unless
+ * it is set. cede_junction_build() checks it.
  */
-cede_status cede_junction_set_tolerance(struct cede_junction *junction,
-                                        float tolerance);
+cede_status cede_junction_set_tolerance(struct cede_junction *junction, float tolerance);
 
 /**
  * Adds a path through `count` points, for vehicles of a class with this largest footprint, and writes its number. The

@@ -189,7 +189,8 @@ pub unsafe extern "C" fn cede_junction_init(junction: *mut cede_junction) -> ced
     unsafe { make(junction, Site::begin) }.into()
 }
 
-/// Sets how far (m) any point of a vehicle's footprint may be from where it is on its path, in [0, 1]; 0.1 unless it is set.
+/// Sets how far (m) any point of a vehicle's footprint may be from where it is on its path, in [0, 1]; 0.1 unless
+/// it is set. cede_junction_build() checks it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cede_junction_set_tolerance(
     junction: *mut cede_junction,

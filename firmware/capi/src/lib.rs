@@ -1,7 +1,7 @@
 //! Cede's controller as a C library. `include/cede.h` is generated from this crate; `docs/integration.md` is its manual.
 //!
 //! Every function checks its pointers and its objects, copies its arguments, calls the controller, and writes the results.
-//! The controller itself has no `unsafe`; all of it is here, in [`memory`], [`object`] and one line of each function.
+//! The controller itself has no `unsafe`; all of it is here, in `memory`, `object` and one block of each function.
 //!
 //! # Panics
 //!
