@@ -153,7 +153,7 @@ enum cede_status
      */
     CEDE_STATUS_CORRUPT = 4,
     /**
-     * The junction of this approach has been initialised anew.
+     * The junction of this approach is another one now.
      */
     CEDE_STATUS_STALE = 5,
     /**

@@ -17,7 +17,7 @@ pub enum cede_status {
     NotInitialised = 3,
     /// The object's bytes have changed between two calls.
     Corrupt = 4,
-    /// The junction of this approach has been initialised anew.
+    /// The junction of this approach is another one now.
     Stale = 5,
     /// An array is larger than memory.
     TooLarge = 6,
@@ -116,7 +116,7 @@ pub(crate) const STATUS: &[(i32, &CStr)] = &[
     ),
     (
         cede_status::Stale as i32,
-        c"the junction of this approach has been initialised anew",
+        c"the junction of this approach is another one now",
     ),
     (
         cede_status::TooLarge as i32,

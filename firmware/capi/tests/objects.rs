@@ -121,7 +121,11 @@ fn an_approach_of_a_junction_that_is_made_anew_is_stale() {
     let (status, decision) = world.decide(1_100_000, &seen(&tracks));
     assert_eq!(status, cede_status::Stale);
     assert_eq!(decision.acceleration, -CEDE_LAST_RESORT_BRAKING);
-    world.junction();
+    // Another junction; the same one, byte for byte, would be the one that it entered.
+    world.path(&common::points(&common::THEIRS));
+    // SAFETY: as the header says.
+    let built = unsafe { cede_junction_build(&mut world.junction, null_mut()) };
+    assert_eq!(built, OK);
     let (status, _) = world.decide(1_200_000, &seen(&tracks));
     assert_eq!(status, cede_status::Stale);
 }
