@@ -90,3 +90,5 @@ echo "network 8-64-64-64-4, instructions for each of its 2 x 8,960 multiplicatio
 [ "$flash" -le $max_flash ] || fail "more than $max_flash bytes of flash"
 [ "$ram" -le $max_ram ] || fail "more than $max_ram bytes of RAM to decide"
 [ "$preparing" -le $max_ram ] || fail "more than $max_ram bytes of RAM to prepare a junction"
+
+firmware/capi/check.sh

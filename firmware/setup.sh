@@ -34,6 +34,7 @@ packages=()
 has_target || packages+=(rustc-web rust-web-src)
 command -v qemu-system-arm >/dev/null || packages+=(qemu-system-arm)
 command -v arm-none-eabi-nm >/dev/null || packages+=(binutils-arm-none-eabi)
+command -v arm-none-eabi-gcc >/dev/null || packages+=(gcc-arm-none-eabi) # for the example in C; without a C library
 
 # An index of the set-up's own: the machine's may be stale, or another program may be writing it.
 apt=(-o "Dir::State::lists=$new/lists" -o "Dir::Cache=$new/cache" -o APT::Sandbox::User=root
@@ -42,7 +43,7 @@ apt=(-o "Dir::State::lists=$new/lists" -o "Dir::Cache=$new/cache" -o APT::Sandbo
 # fetch: downloads the packages, checks their versions, unpacks them as $build/tools+NAME=VERSION+...
 fetch() {
     command -v apt-get >/dev/null && [ "$(id -u)" = 0 ] || fail "${packages[*]} are missing, and only root on" \
-        "Debian can unpack them here; install QEMU for Arm, the GNU binutils for arm-none-eabi," \
+        "Debian can unpack them here; install QEMU for Arm, GNU binutils and GCC for arm-none-eabi," \
         "and the target with: rustup target add $target"
     echo "fetching ${packages[*]}"
     mkdir -p "$new/lists/partial" "$new/cache/archives/partial" "$new/tools/bin"
@@ -61,7 +62,7 @@ fetch() {
     for deb in "$new"/cache/archives/*.deb; do dpkg -x "$deb" "$new/tools"; done
     wrap cortex-rustc rustc
     wrap qemu-system-arm qemu-system-arm -L '"$root/usr/share/qemu"'
-    for package in nm size objdump; do wrap arm-none-eabi-$package arm-none-eabi-$package; done
+    for package in nm size objdump objcopy ld ar as gcc; do wrap arm-none-eabi-$package arm-none-eabi-$package; done
     works "$new/tools" || fail "what was unpacked does not start"
 
     # An epoch's colon would split LD_LIBRARY_PATH.

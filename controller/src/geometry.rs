@@ -3,6 +3,7 @@
 //! [`nalgebra`] is used without features, so on a microcontroller it has no square root: lengths are
 //! those of [`length`] and [`distance`], which have the same bits everywhere.
 
+use crate::real::sqrt;
 use nalgebra::{Point2, Scalar, Unit, UnitVector2, Vector2};
 
 /// A point in metres, in any fixed frame of the plane: first axis east, second north.
@@ -25,7 +26,7 @@ pub const fn unit(x: f32, y: f32) -> UnitVector {
 #[must_use]
 #[inline]
 pub fn length(vector: &Vector) -> f32 {
-    libm::sqrtf(vector.dot(vector))
+    sqrt(vector.dot(vector))
 }
 
 /// Distance between two points in metres, with the same bits everywhere.

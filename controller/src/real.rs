@@ -59,6 +59,15 @@ pub trait Elementary: Real + Scalar {
     fn angle(self, other: Self, origin: Self) -> Self;
 }
 
+/// The correctly rounded square root: by the core with the feature `core-sqrt`, with the same bits.
+#[inline]
+pub(crate) fn sqrt(x: f32) -> f32 {
+    #[cfg(feature = "core-sqrt")]
+    return cede_sqrt::sqrtf(x);
+    #[cfg(not(feature = "core-sqrt"))]
+    libm::sqrtf(x)
+}
+
 impl Real for f32 {
     #[inline]
     fn of(value: f32) -> Self {
@@ -67,7 +76,7 @@ impl Real for f32 {
 
     #[inline]
     fn sqrt(self) -> Self {
-        libm::sqrtf(self)
+        sqrt(self)
     }
 
     // Not `f32::min` and `max`, which differ between processors on ±0.

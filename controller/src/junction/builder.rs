@@ -41,7 +41,7 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
                 paths: Vec::new(),
                 points: Vec::new(),
                 arc: Vec::new(),
-                conflicts: [[RouteConflict::NONE; R]; E],
+                conflicts: Vec::new(),
                 tolerance: TOLERANCE,
             },
             lines: Vec::new(),
@@ -170,9 +170,18 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
     ///
     /// # Errors
     /// [`JunctionError::NoPaths`], [`JunctionError::Tolerance`], [`JunctionError::Returns`].
+    pub fn build(mut self) -> Result<Junction<R, P, E>, JunctionError> {
+        self.build_in_place()?;
+        Ok(self.junction)
+    }
+
+    /// [`JunctionBuilder::build`] where the builder is, for a memory without room for a second junction.
+    ///
+    /// # Errors
+    /// As [`JunctionBuilder::build`].
     // Not inlined, so that the stack of `fill` is free again when the junction is moved.
     #[inline(never)]
-    pub fn build(mut self) -> Result<Junction<R, P, E>, JunctionError> {
+    pub fn build_in_place(&mut self) -> Result<&Junction<R, P, E>, JunctionError> {
         let value = self.junction.tolerance;
         if !(0.0..=MAX_TOLERANCE).contains(&value) {
             return Err(JunctionError::Tolerance { value });
@@ -181,7 +190,7 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
             return Err(JunctionError::NoPaths);
         }
         self.fill()?;
-        Ok(self.junction)
+        Ok(&self.junction)
     }
 
     /// Fills in conflicts and lines.
@@ -309,6 +318,8 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
     fn push(&mut self, path: Path) -> Result<(), JunctionError> {
         let full = JunctionError::TooManyPaths { capacity: R };
         self.junction.paths.push(path).map_err(|_| full)?;
+        // There is room for the first `E`.
+        let _ = self.junction.conflicts.push([RouteConflict::NONE; R]);
         self.lines.push(None).map_err(|_| full)
     }
 }

@@ -3,6 +3,7 @@
 use crate::geometry::Point;
 use crate::junction::polyline::{Piece, Polyline};
 use crate::junction::zone::{Span, Zone, Zones};
+use crate::real::sqrt;
 
 /// A vehicle has reached the conflict point when it is nearer to it than this (m): the paper's rule.
 pub const CONFLICT_RADIUS: f32 = 5.0;
@@ -82,7 +83,7 @@ fn reach(route: Polyline<'_>, point: Point) -> f32 {
         }
         let discriminant = half * half - rest * direction.dot(&direction);
         if discriminant >= 0.0 {
-            let x = (-half - libm::sqrtf(discriminant)) / direction.dot(&direction);
+            let x = (-half - sqrt(discriminant)) / direction.dot(&direction);
             if x >= 0.0 && x <= piece.to - piece.from {
                 return piece.from + x;
             }

@@ -1,6 +1,7 @@
 //! Points with their arc lengths, wherever they are kept.
 
 use crate::geometry::{Point, Pose, Vector, distance, unit};
+use crate::junction::meeting::within;
 
 /// A view of a polyline, addressed by arc length `s` in metres from its first point.
 ///
@@ -100,9 +101,9 @@ impl<'a> Polyline<'a> {
         let mut best = (f32::INFINITY, 0.0);
         for piece in (0..self.pieces()).filter_map(|i| self.piece(i)) {
             let direction = piece.velocity();
-            let along = (point - piece.start)
-                .dot(&direction)
-                .clamp(0.0, piece.to - piece.from);
+            let along = (point - piece.start).dot(&direction);
+            // Not `clamp`, which panics where it cannot see that the piece has a length.
+            let along = within(along, piece.to - piece.from);
             let away = distance(&(piece.start + direction * along), &point);
             if away < best.0 {
                 best = (away, piece.from + along);

@@ -39,7 +39,7 @@ pub struct Junction<const R: usize, const P: usize, const E: usize = R> {
     /// Their arc lengths (m), each path's from its own start.
     pub(super) arc: Vec<f32, P>,
     /// How each path that can be entered meets each path.
-    pub(super) conflicts: [[RouteConflict; R]; E],
+    pub(super) conflicts: Vec<[RouteConflict; R], E>,
     pub(super) tolerance: f32,
 }
 

@@ -37,6 +37,15 @@ fn builder<const E: usize>() -> JunctionBuilder<4, 16, E> {
     builder
 }
 
+#[test]
+fn a_junction_that_is_built_in_place_is_the_same_also_when_it_is_built_again() {
+    let junction = builder::<4>().build().unwrap();
+    let mut place = builder::<4>();
+    for _ in 0..2 {
+        assert_eq!(place.build_in_place().unwrap(), &junction);
+    }
+}
+
 fn ids() -> [PathId; 4] {
     [0, 1, 2, 3].map(PathId::new)
 }

@@ -96,7 +96,7 @@ fn vehicle_on(
         [-most, most],
     )?;
     let direction = vehicle.pose.direction;
-    let norm = libm::sqrtf(direction.dot(&direction));
+    let norm = crate::geometry::length(&direction);
     check(Field::Direction, norm, UNIT)?;
     let away = distance(&vehicle.pose.position, &line.pose(vehicle.s).position);
     check(Field::Offset, away, [0.0, spare])?;

@@ -24,6 +24,18 @@ impl ContractError {
     pub const fn value(&self) -> f32 {
         self.value
     }
+
+    /// The lower and the upper end of its range.
+    #[must_use]
+    pub const fn range(&self) -> [f32; 2] {
+        [self.range.low, self.range.high]
+    }
+
+    /// Whether the lower end is outside the range; the upper end is always inside.
+    #[must_use]
+    pub const fn excludes_low(&self) -> bool {
+        self.range.open
+    }
 }
 
 impl core::fmt::Display for ContractError {

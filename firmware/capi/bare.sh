@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# Builds the C library for a core without an operating system, and makes one object of it in which nothing but the
+# interface is global: bare.sh TARGET FOLDER [cargo options]. Prints where libcede.a is; beside it is what it was made of.
+#
+# $cross is the prefix of the GNU tools, and $bare_compiler and $bare_flags may name a compiler and its flags for a
+# target that rustup does not have.
+set -euo pipefail
+target=$1
+folder=$2
+shift 2
+here=$(cd "$(dirname "$0")" && pwd)
+cross=${cross:-arm-none-eabi-}
+
+mkdir -p "$folder"
+[ -z "${bare_compiler:-}" ] || export RUSTC=$bare_compiler
+variable=CARGO_TARGET_$(tr 'a-z-' 'A-Z_' <<<"$target")_RUSTFLAGS
+export "$variable=${bare_flags:-}"
+# As a static library alone: beside an rlib it would not be optimised as a whole.
+cargo rustc --lib --crate-type staticlib --release --locked --manifest-path "$here/Cargo.toml" --no-default-features \
+    --features embedded-policy,core-sqrt --target "$target" --target-dir "$folder/../cargo" "$@" >&2
+
+# Of a static library C sees every symbol: Rust's memcpy and sqrtf, its panic handler, those of another Rust library.
+grep -oE '^[^#* /].*\bcede_[a-z0-9_]+\(' "$here/include/cede.h" | grep -oE 'cede_[a-z0-9_]+\($' | tr -d '(' | sort -u >"$folder/interface"
+mapfile -t roots < <(sed 's/^/--undefined=/' "$folder/interface")
+"${cross}ld" -r --gc-sections "${roots[@]}" "$folder/../cargo/$target/release/libcede.a" -o "$folder/whole.o"
+"${cross}objcopy" --keep-global-symbols="$folder/interface" --strip-unneeded "$folder/whole.o" "$folder/cede.o"
+rm -f "$folder/libcede.a"
+"${cross}ar" rcsD "$folder/libcede.a" "$folder/cede.o"
+echo "$folder/libcede.a"
