@@ -1,10 +1,14 @@
 //! Cede from Python. The package `cede` wraps this module; `docs/python.md` describes both.
 
 mod approach;
+mod batch;
 mod contract;
+mod dataset;
 mod decision;
 mod error;
+mod evaluate;
 mod junction;
+mod look;
 mod observation;
 mod policy;
 
@@ -28,5 +32,17 @@ fn _cede(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<decision::Reason>()?;
     module.add_class::<decision::Fault>()?;
     module.add_class::<decision::Prediction>()?;
+    module.add_class::<dataset::Dataset>()?;
+    module.add_class::<batch::Batch>()?;
+    module.add_class::<evaluate::Seen>()?;
+    module.add(
+        "FEATURES",
+        cede_controller::FeatureSet::Route
+            .labels()
+            .collect::<Vec<_>>(),
+    )?;
+    module.add("SCALES", look::SCALES.to_vec())?;
+    module.add_function(wrap_pyfunction!(evaluate::evaluate, module)?)?;
+    module.add_function(wrap_pyfunction!(evaluate::driver_names, module)?)?;
     Ok(())
 }

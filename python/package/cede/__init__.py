@@ -1,6 +1,6 @@
 """Cede decides how a vehicle crosses an unsignalized intersection.
 
-The controller is here; environments are in `cede.envs`, recordings in `cede.data`, the bridge to
+The controller is here; environments are in `cede.envs` and registered by this import, recordings in `cede.data`, the bridge to
 SUMO in `cede.sumo`.
 """
 
@@ -20,8 +20,12 @@ from ._cede import (
     Shield,
     Track,
     Vehicle,
+    View,
     __version__,
 )
+from ._register import register
+from .evaluation import evaluate
+
 
 __all__ = [
     "Approach",
@@ -39,5 +43,9 @@ __all__ = [
     "Shield",
     "Track",
     "Vehicle",
+    "View",
     "__version__",
+    "evaluate",
 ]
+
+register()
