@@ -1,6 +1,6 @@
 """Environment steps a second: Cede's environments beside highway-env, in one run, on one core.
 
-    pip install highway-env && python python/benches/steps.py
+pip install highway-env && python python/benches/steps.py
 """
 
 import os
@@ -76,7 +76,9 @@ def report(name, measured):
 
 
 def main():
-    print(f"steps a second of processor time, median of {RUNS} runs of {SECONDS:.0f} s [least, most]")
+    print(
+        f"steps a second of processor time, median of {RUNS} runs of {SECONDS:.0f} s [least, most]"
+    )
     n = 4096
     for mode in ("joint", "left"):
         for sample, copy in (("numpy", False), ("numpy", True), ("space", True)):

@@ -118,11 +118,17 @@ def test_a_number_out_of_range_is_named_with_value_and_range():
 @pytest.mark.parametrize(
     ("call", "said"),
     [
-        (lambda: cede.Contract("best-case"), "base = `best-case` is none of: worst-case, all-way-stop"),
+        (
+            lambda: cede.Contract("best-case"),
+            "base = `best-case` is none of: worst-case, all-way-stop",
+        ),
         (lambda: cede.Contract(brakes=1.0), "no number `brakes`; it has: period"),
         (lambda: cede.Contract(period="x"), "period = x is not a number"),
         (lambda: cede.Junction.builder().build(), "a junction without paths"),
-        (lambda: cede.Junction.builder().path([(0, 0)]), "points of path 0: a route needs two points"),
+        (
+            lambda: cede.Junction.builder().path([(0, 0)]),
+            "points of path 0: a route needs two points",
+        ),
         (lambda: cede.Junction.builder().path(np.zeros((3, 3))), r"shape \[3, 3\] is not \(n, 2\)"),
         (lambda: cede.Junction.builder().path([(0, 0), (1, 0)], kind="tram"), "kind = `tram`"),
         (lambda: cede.Junction.builder().right_of_way(0, 1), "path 0: there are 0"),

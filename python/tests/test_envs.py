@@ -92,9 +92,7 @@ def drive(envs_, steps, seed=5):
 @pytest.mark.parametrize("autoreset", ["next-step", "same-step"])
 def test_any_number_of_threads_gives_the_same_bits(autoreset):
     def run(threads):
-        made = gymnasium.make_vec(
-            ID, num_envs=301, threads=threads, autoreset=autoreset, **FEW
-        )
+        made = gymnasium.make_vec(ID, num_envs=301, threads=threads, autoreset=autoreset, **FEW)
         return drive(made, 120)
 
     one, two = run(1), run(2)

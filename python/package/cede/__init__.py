@@ -1,7 +1,7 @@
 """Cede decides how a vehicle crosses an unsignalized intersection.
 
-The controller is here; environments are in `cede.envs` and registered by this import, recordings in `cede.data`, the bridge to
-SUMO in `cede.sumo`.
+The controller is here, and `evaluate`. Importing this registers the environments of `cede.envs`
+with Gymnasium. Recordings are in `cede.data`, the bridge to SUMO is in `cede.sumo`.
 """
 
 from ._cede import (
@@ -25,7 +25,6 @@ from ._cede import (
 )
 from ._register import register
 from .evaluation import evaluate
-
 
 __all__ = [
     "Approach",
