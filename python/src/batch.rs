@@ -240,6 +240,22 @@ impl Batch {
         Ok(())
     }
 
+    /// Writes what one of the two vehicles in `place` sees.
+    fn view(
+        &self,
+        place: usize,
+        vehicle: usize,
+        mut observation: PyReadwriteArray1<'_, f32>,
+    ) -> PyResult<()> {
+        let (block, lane) = self.at(place)?;
+        if vehicle > 1 {
+            return Err(error(format!("vehicle = {vehicle} is outside [0, 1]")));
+        }
+        let row = sized(observation.as_slice_mut(), FEATURES, "observation")?;
+        self.rules.look(&self.blocks[block].0, lane, vehicle, row);
+        Ok(())
+    }
+
     /// For drawing: number of the encounter in `place`, and x, y (m) and heading (rad) of its two vehicles.
     fn scene(&self, place: usize) -> PyResult<(usize, [[f32; 3]; 2])> {
         let (block, lane) = self.at(place)?;
@@ -379,11 +395,8 @@ impl Rules {
                 continue;
             }
             memory.paid[lane] = 0.0;
-            self.look(
-                block,
-                lane,
-                &mut finals[lane * FEATURES..(lane + 1) * FEATURES],
-            );
+            let row = &mut finals[lane * FEATURES..(lane + 1) * FEATURES];
+            self.look(block, lane, self.commanded().start, row);
         }
         if self.autoreset == Autoreset::SameStep {
             block.restart(&self.library);
@@ -456,15 +469,12 @@ impl Rules {
 
     fn observe(&self, block: &Eight, rows: &mut [f32]) {
         for (lane, row) in rows.chunks_exact_mut(FEATURES).enumerate() {
-            self.look(block, lane, row);
+            self.look(block, lane, self.commanded().start, row);
         }
     }
 
-    fn look(&self, block: &Eight, lane: usize, row: &mut [f32]) {
-        let ego = match self.mode {
-            Mode::Joint => 0,
-            Mode::Ego(ego) => ego,
-        };
+    /// What vehicle `ego` sees; a joint policy sees what the left-turner does.
+    fn look(&self, block: &Eight, lane: usize, ego: usize, row: &mut [f32]) {
         let vehicles = block.vehicles();
         let states = [0, 1].map(|i| vehicles[i].state(lane));
         let poses = [0, 1].map(|i| vehicles[i].pose(lane));

@@ -27,7 +27,7 @@ def test_an_episode_ends_and_a_time_out_is_a_truncation():
     env = gymnasium.make(ID, **FEW)
     for action, ends in (([1.0, 1.0], (True, False)), ([-1.0, -1.0], (False, True))):
         env.reset(seed=3)
-        for step in range(1, 2000):
+        for step in range(1, 2000):  # noqa: B007
             _, _, terminated, truncated, info = env.step(np.array(action, np.float32))
             if terminated or truncated:
                 break

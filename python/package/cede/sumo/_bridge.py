@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import os
 import random
+import sys
 import tempfile
 import time
 from dataclasses import dataclass, field
@@ -138,7 +140,9 @@ class Bridge:
 
             program = "sumo-gui"
         else:
-            import libsumo as sumo
+            # It may warn of other packages, on the stream where the numbers go.
+            with contextlib.redirect_stdout(sys.stderr):
+                import libsumo as sumo
 
             program = "sumo"
         self.sumo = sumo
@@ -443,5 +447,5 @@ def contract_named(name: str) -> Contract:
 
 
 def _contract_of(site: Site) -> Contract:
-    """Who arrives first goes first where everybody stops; elsewhere nobody's courtesy is assumed."""
+    """First come, first served where everybody stops; elsewhere nobody's courtesy is assumed."""
     return contract_named("all-way-stop" if site.kind == "allway_stop" else "worst-case")
