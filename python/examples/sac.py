@@ -1,6 +1,6 @@
 """Trains stable-baselines3's SAC on an encounter, and flies its policy behind the shield.
 
-    pip install ./python stable-baselines3 onnx && python python/examples/sac.py
+pip install ./python stable-baselines3 onnx && python python/examples/sac.py
 """
 
 import argparse

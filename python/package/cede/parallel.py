@@ -18,7 +18,7 @@ AGENTS = ("left", "other")
 
 
 class parallel_env(ParallelEnv):
-    """An encounter of two agents, `"left"` and `"other"`; the keywords of `EncounterEnv` but `mode`."""
+    """An encounter of two agents; it takes the keywords of `EncounterEnv`, but `mode`."""
 
     metadata: ClassVar[dict[str, Any]] = {
         "name": "cede_encounter_v0",

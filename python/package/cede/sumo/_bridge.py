@@ -242,17 +242,24 @@ class Bridge:
     # Who is where.
 
     def _drive_all(self, now: float) -> None:
-        driven = self.settings.driver != "sumo"
-        seen: dict[str, list[tuple[Car, Track]]] = {}
         for car in self.cars.values():
             self._follow(car)
-            for site in self.network.using.get(car.lane, ()) if driven else ():
-                track = self._track(site, car)
+        if self.settings.driver == "sumo":
+            return
+        driven = [car for car in self.cars.values() if car.chosen and car.on_path]
+        seen = self._seen({car.site.name for car in driven})
+        for car in driven:
+            self._drive(car, now, self._relevant(car, seen[car.site.name]))
+
+    def _seen(self, names: set[str]) -> dict[str, list[tuple[Car, Track]]]:
+        """Who is at each of these junctions."""
+        seen: dict[str, list[tuple[Car, Track]]] = {name: [] for name in names}
+        for car in self.cars.values():
+            for site in self.network.using.get(car.lane, ()):
+                track = self._track(site, car) if site.name in names else None
                 if track is not None:
-                    seen.setdefault(site.name, []).append((car, track))
-        for car in self.cars.values() if driven else ():
-            if car.chosen and car.on_path:
-                self._drive(car, now, self._relevant(car, seen.get(car.site.name, [])))
+                    seen[site.name].append((car, track))
+        return seen
 
     def _relevant(self, car: Car, seen: list[tuple[Car, Track]]) -> list[Track]:
         """The tracks without those that others hold back.
