@@ -228,7 +228,7 @@ class Approach:
     def decide(self, now: float, ego: Vehicle, tracks: Sequence[Track] = ...) -> Decision:
         """The ego's acceleration for the period that begins `now` (s). Call it once a period."""
     def ready(self, now: float, ego: Vehicle, tracks: Sequence[Track] = ...) -> float:
-        """Metres to spare of the best plan, before control is handed over; raises if none is safe."""
+        """Metres to spare of the best plan before control is handed over; raises without one."""
     def proposal(self, ego: Vehicle, tracks: Sequence[Track] = ...) -> float:
         """What the policy alone would do (m/s²): to measure what the shield costs."""
     @property
@@ -253,7 +253,7 @@ class Shield:
     ) -> Decision:
         """`proposal` (m/s²) if it is safe, else the nearest that is. Call it once a period."""
     def ready(self, now: float, ego: Vehicle, tracks: Sequence[Track] = ...) -> float:
-        """Metres to spare of the best plan, before control is handed over; raises if none is safe."""
+        """Metres to spare of the best plan before control is handed over; raises without one."""
     @property
     def plan(self) -> int | None: ...
     def forget(self, number: int) -> None: ...

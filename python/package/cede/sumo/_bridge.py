@@ -247,45 +247,49 @@ class Bridge:
         if self.settings.driver == "sumo":
             return
         driven = [car for car in self.cars.values() if car.chosen and car.on_path]
-        seen = self._seen({car.site.name for car in driven})
-        for car in driven:
-            self._drive(car, now, self._relevant(car, seen[car.site.name]))
-
-    def _seen(self, names: set[str]) -> dict[str, list[tuple[Car, Track]]]:
-        """Who is at each of these junctions."""
-        seen: dict[str, list[tuple[Car, Track]]] = {name: [] for name in names}
+        there: dict[str, list[Car]] = {car.site.name: [] for car in driven}
         for car in self.cars.values():
             for site in self.network.using.get(car.lane, ()):
-                track = self._track(site, car) if site.name in names else None
-                if track is not None:
-                    seen[site.name].append((car, track))
-        return seen
+                if site.name in there:
+                    there[site.name].append(car)
+        self._tracks: dict[tuple[str, str], Track | None] = {}
+        for car in driven:
+            relevant = self._relevant(car, there[car.site.name])
+            tracks = [self._track(car.site, other) for other in relevant]
+            self._drive(car, now, [track for track in tracks if track is not None])
 
-    def _relevant(self, car: Car, seen: list[tuple[Car, Track]]) -> list[Track]:
-        """The tracks without those that others hold back.
+    def _relevant(self, car: Car, there: list[Car]) -> list[Car]:
+        """The others at the junction without those that others hold back.
 
         Nobody overtakes in a lane: who is behind another on its way to the junction reaches no
         zone before it, and may take every path that the one behind may take. In the vehicle's own
         lane that is the one just ahead; whoever is behind the vehicle is held back by it.
         """
-        first: dict[str, tuple[Car, Track]] = {}
+        first: dict[str, Car] = {}
         inside = []
-        for other, track in seen:
+        for other in there:
             if other is car:
                 continue
             if car.site is not self.network.entering.get(other.lane):
-                inside.append(track)
+                inside.append(other)
             elif other.lane == car.lane and other.position < car.position:
                 continue
             else:
                 known = first.get(other.lane)
-                ahead = known is None or other.position > known[0].position
+                ahead = known is None or other.position > known.position
                 if ahead != (known is not None and other.lane == car.lane):
-                    first[other.lane] = (other, track)
-        return inside + [track for _, track in first.values()]
+                    first[other.lane] = other
+        return inside + list(first.values())
 
     def _track(self, site: Site, car: Car) -> Track | None:
-        """The vehicle as others see it: on every path that its lane belongs to."""
+        """The vehicle as others see it at this step; `None` if it is on no path."""
+        key = (site.name, car.name)
+        if key not in self._tracks:
+            self._tracks[key] = self._new_track(site, car)
+        return self._tracks[key]
+
+    def _new_track(self, site: Site, car: Car) -> Track | None:
+        """The vehicle on every path that its lane belongs to."""
         places = site.on_lane[car.lane]
         if len(places) > 1 and car.site is site:
             told = self.settings.intent == "known" or car.lane == car.movement.outgoing
