@@ -39,5 +39,5 @@ wheel=(.build/wheels/cede-*.whl)
 "$venv/bin/python" -m pytest -q -rs python/tests -c python/pyproject.toml
 
 # The first example of the documentation, as it is printed there.
-sed -n '/^```python$/,/^```$/p;/^```$/{/python/!d}' docs/python.md | awk '/^```python$/{n++;next} /^```$/{if(n==1)exit;next} n==1' >.build/first_example.py
+awk '/^```python$/ {inside = 1; next} /^```$/ && inside {exit} inside' docs/python.md >.build/first_example.py
 "$venv/bin/python" .build/first_example.py

@@ -16,6 +16,9 @@ from stable_baselines3 import SAC
 import cede
 from cede.envs import FEATURES, SCALES
 
+ID = "cede/Encounter-v0"
+TASK = {"mode": "left", "reward": "paper", "encounters": 1000}
+
 
 def export(model, file):
     """Write the actor's mean as the ONNX graph that `cede.Policy.from_onnx` reads."""
@@ -52,14 +55,30 @@ def judge(driver, **keywords):
     return "  ".join(f"{name} {row[name]:.4g}" for name in names)
 
 
+def mean_return(model, episodes=256):
+    """Mean return of the policy's means on the test encounters, and its standard error."""
+    envs = gymnasium.make_vec(ID, num_envs=64, split="test", autoreset="same-step", **TASK)
+    seen, _ = envs.reset(seed=1)
+    running, returns = np.zeros(64), []
+    while len(returns) < episodes:
+        seen, rewards, terminated, truncated, _ = envs.step(
+            model.predict(seen, deterministic=True)[0]
+        )
+        running += rewards
+        ended = terminated | truncated
+        returns += running[ended].tolist()
+        running[ended] = 0.0
+    return f"{np.mean(returns):.2f} ± {np.std(returns) / len(returns) ** 0.5:.2f}"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--steps", type=int, default=20_000)
-    parser.add_argument("--rounds", type=int, default=4)
+    parser.add_argument("--steps", type=int, default=12_000)
+    parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--seed", type=int, default=0)
     args = parser.parse_args()
     torch.set_num_threads(1)
-    env = gymnasium.make("cede/Encounter-v0", mode="left", reward="paper", encounters=1000)
+    env = gymnasium.make(ID, **TASK)
     network = {"net_arch": [64, 64]}
     model = SAC("MlpPolicy", env, policy_kwargs=network, learning_starts=1000, seed=args.seed)
     print(f"nearer-first                {judge('nearer-first')}", flush=True)
@@ -68,7 +87,8 @@ def main():
         export(model, "sac.onnx")
         policy = cede.Policy.from_onnx("sac.onnx", features="route")
         taken = time.process_time() - began
-        print(f"{model.num_timesteps:>7} steps {taken:>6.0f} CPU-s  {judge(policy)}", flush=True)
+        told = f"{model.num_timesteps:>7} steps {taken:>5.0f} CPU-s  return {mean_return(model)}"
+        print(f"{told}  {judge(policy)}", flush=True)
         if done < args.rounds:
             model.learn(args.steps // args.rounds, reset_num_timesteps=False)
     print(f"behind the shield           {judge(policy, shield='worst-case')}")
