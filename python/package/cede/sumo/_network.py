@@ -152,11 +152,11 @@ class Network:
             except Error as wrong:
                 raise self._wrong(node, connection, wrong) from None
             movements.append(self._movement(path, connection, way))
-        for second, connection in enumerate(connections):
-            for first, other in enumerate(connections):
-                gives_way = _forbids(node, other, connection)
-                if first != second and gives_way and not _forbids(node, connection, other):
-                    builder.right_of_way(first, second)
+        for second, later in enumerate(connections):
+            for first, earlier in enumerate(connections[:second]):
+                # Who arrives at once needs an order: where SUMO has none, that of its links.
+                swapped = _forbids(node, later, earlier) and not _forbids(node, earlier, later)
+                builder.right_of_way(*((second, first) if swapped else (first, second)))
         try:
             junction = builder.build()
         except Error as wrong:
