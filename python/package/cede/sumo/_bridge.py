@@ -15,11 +15,10 @@ from typing import Any
 from .._cede import Contract, Drive, Error, Policy, Shield, Track
 from ._demand import write_demand
 from ._measures import CRITICAL, STANDING, STUCK, Measures
-from ._network import STOPS, Movement, Network, Site, Stretch
+from ._network import MOST_CANDIDATES, STOPS, Movement, Network, Site, Stretch
 
 DRIVERS = ("cede", "profile", "sumo")
 INTENTS = ("hidden", "known")
-MOST_CANDIDATES = 4
 
 AT_LINE = 2.0
 """Metres before its line from which a vehicle that stands is at it."""
@@ -232,7 +231,7 @@ class Bridge:
         if car.on_path:
             lateral = car.speed**2 * car.movement.at(car.movement.curvature, car.front)
         metres = (before + car.speed) / 2 * self.settings.step
-        self.measures.moved(metres, was, car.acceleration, lateral)
+        self.measures.moved(metres, self.settings.step, (was, car.acceleration), lateral)
 
     def _finish(self) -> None:
         simulation, measures = self.sumo.simulation, self.measures

@@ -40,11 +40,14 @@ class Measures:
     seconds: float = 0.0
     refused: int = 0
 
-    def moved(self, metres: float, before: float, after: float, lateral: float) -> None:
-        """Count a step of a vehicle under test: accelerations (m/s²) before and after it."""
+    def moved(
+        self, metres: float, step: float, accelerations: tuple[float, float], lateral: float
+    ) -> None:
+        """Count a step (s) of a vehicle under test: accelerations (m/s²) before and after it."""
+        before, after = accelerations
         self.metres += metres
         self.hard_brakes += after < -HARD <= before
-        self.jerk_squares += ((after - before) / 0.1) ** 2
+        self.jerk_squares += ((after - before) / step) ** 2
         self.jerks += 1
         self.lateral_max = max(self.lateral_max, lateral)
 

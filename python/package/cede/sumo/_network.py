@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import Counter
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -23,6 +24,9 @@ TYPES = (
 
 STOPS = "sw"
 """States of a connection at which a vehicle stops before it goes: a stop sign, an all-way stop."""
+
+MOST_CANDIDATES = 4
+"""Ways that a lane may lead: a track has so many candidate paths."""
 
 BEFORE, BEYOND = 150.0, 100.0
 """Metres of the lanes before and beyond a junction that belong to its paths."""
@@ -143,6 +147,13 @@ class Network:
         connections = [c for c in node.getConnections() if not _is_internal(c.getFrom().getID())]
         if len({c.getFromLane().getID() for c in connections}) < 2:
             return None
+        ways = Counter(c.getFromLane().getID() for c in connections)
+        for lane, count in ways.items():
+            if count > MOST_CANDIDATES:
+                raise Error(
+                    f"{self.file}: junction {node.getID()}: lane {lane} leads {count} ways: "
+                    f"at most {MOST_CANDIDATES} are followed; build the network without turnarounds"
+                )
         builder, movements = Junction.builder(TOLERANCE), []
         for connection in connections:
             way = _Way.along(self._lanes(node, connection), self.length)
