@@ -173,5 +173,5 @@ impl Memory {
 
 /// Everything that can be commanded: least and most.
 const fn anything(contract: &Contract) -> [f32; 2] {
-    [-contract.ego.braking, contract.ego.acceleration]
+    [-contract.ego.emergency, contract.ego.acceleration]
 }

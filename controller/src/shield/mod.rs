@@ -644,11 +644,11 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         }
     }
 
-    /// The next command of the remembered plan, which is then one command shorter; braking, if there is none.
+    /// The next command of the remembered plan, which is then one command shorter; without one, all the braking there is.
     fn carry_on(&mut self, most: f32) -> f32 {
         let contract = &self.contract;
         let Some(plan) = self.memory.plan() else {
-            return -contract.ego.braking;
+            return -contract.ego.emergency;
         };
         self.memory.shorten(R::tail);
         allowed(&contract.ego, most, next(contract, plan))

@@ -473,6 +473,7 @@ fn scaled(routes: &[Route<4>], mut contract: Contract, factor: f32) -> (Site, Co
         &mut contract.ego.acceleration,
         &mut contract.ego.go,
         &mut contract.ego.braking,
+        &mut contract.ego.emergency,
         &mut contract.other.max_speed,
         &mut contract.other.acceleration,
         &mut contract.other.braking,
@@ -525,7 +526,7 @@ fn placed(site: &Site, path: u8, vehicle: Result<State, Vehicle>) -> Vehicle {
     vehicle.map_or_else(|wrong| wrong, |state| on(site, PathId::new(path), state))
 }
 
-fn contract_of(bits: [u32; 16]) -> Contract {
+fn contract_of(bits: [u32; 17]) -> Contract {
     let mut contract = Contract::ALL_WAY_STOP;
     let numbers = [
         &mut contract.period,
@@ -538,6 +539,7 @@ fn contract_of(bits: [u32; 16]) -> Contract {
         &mut contract.ego.acceleration,
         &mut contract.ego.go,
         &mut contract.ego.braking,
+        &mut contract.ego.emergency,
         &mut contract.other.max_speed,
         &mut contract.other.acceleration,
         &mut contract.other.braking,
@@ -593,7 +595,7 @@ proptest! {
 
     #[test]
     fn whatever_the_contract_it_is_refused_or_kept(
-        bits in any::<[u32; 16]>(), routes in any_site(), own in wild(), other in wild(), proposal in -5.0_f32..5.0,
+        bits in any::<[u32; 17]>(), routes in any_site(), own in wild(), other in wild(), proposal in -5.0_f32..5.0,
     ) {
         if let Ok(contract) = contract_of(bits).to_builder().build() {
             let site = site(&routes);
@@ -601,7 +603,7 @@ proptest! {
             let tracks = [track(&site, 1, other)];
             let seen = Observation { ego: ego(&site, own), tracks: &tracks };
             let decision = shield.filter(Instant::from_millis(1), &seen, proposal);
-            let range = -contract.ego.braking..=contract.ego.acceleration;
+            let range = -contract.ego.emergency..=contract.ego.acceleration;
             prop_assert!(range.contains(&decision.acceleration), "{contract:?} {decision:?}");
             prop_assert!(!decision.margin.is_nan(), "{contract:?} {decision:?}");
         }

@@ -6,8 +6,8 @@ use crate::geometry::Footprint;
 use crate::junction::MAX_PATH_LENGTH;
 use crate::junction::conflict::ConflictKind;
 
-/// Vehicles that point the same way share a lane if they do so over this distance (m) of both paths.
-const LANE: f32 = 2.0;
+/// Vehicles share a way if they point the same way over this share of their lengths, and more than where they cross.
+const ALONG: f32 = 0.4;
 
 /// A part of the occupied set, on the way to a [`Zone`].
 #[derive(Clone, Copy, Debug)]
@@ -70,14 +70,14 @@ impl Patch {
     /// Whether they share a way in it, and do not just cross at a small angle: up to 30° they touch over a length and twice
     /// both widths. A way that begins or ends with a route is shared on beyond it.
     fn is_shared(&self, ego: Footprint, other: Footprint) -> bool {
-        let crossed = 2.0 * (ego.width + other.width);
-        let longer = |span: Span, footprint: Footprint| {
-            let cut = self.starts || self.ends;
-            let touched = if cut { 0.0 } else { footprint.length + crossed };
-            span.to - span.from >= LANE + touched
+        let cut = self.starts || self.ends;
+        let crossed = |length: f32| length + 2.0 * (ego.width + other.width);
+        let longer = |span: Span, length: f32| {
+            let touched = if cut { 0.0 } else { crossed(length) };
+            span.to - span.from >= touched + ALONG * length
         };
         self.parallel
-            .is_some_and(|[a, b]| longer(a, ego) && longer(b, other))
+            .is_some_and(|[a, b]| longer(a, ego.length) && longer(b, other.length))
     }
 
     /// The zone of two vehicles.

@@ -84,9 +84,16 @@ impl ContractBuilder {
         self
     }
 
-    /// [`Ego::braking`] in m/s², in (0, the others' `braking`].
+    /// [`Ego::braking`] in m/s², in (0, the others' `braking`]; it is [`Ego::emergency`], too, unless that is set later.
     pub const fn ego_braking(mut self, ego_braking: f32) -> Self {
         self.numbers.ego.braking = ego_braking;
+        self.numbers.ego.emergency = ego_braking;
+        self
+    }
+
+    /// [`Ego::emergency`] in m/s², in [the ego's `braking`, the others' `braking`].
+    pub const fn ego_emergency(mut self, ego_emergency: f32) -> Self {
+        self.numbers.ego.emergency = ego_emergency;
         self
     }
 

@@ -112,7 +112,7 @@ const fn first(demands: &[Demand]) -> Option<ContractError> {
     None
 }
 
-const fn everywhere(contract: &Contract) -> [Demand; 15] {
+const fn everywhere(contract: &Contract) -> [Demand; 16] {
     let (ego, other, follower) = (contract.ego, contract.other, contract.follower);
     let late = ": a command takes effect before the next one is given, each up to two jitters early or late";
     // Whoever enters a lane ahead of another may do so sooner, and then slower, than planned.
@@ -150,6 +150,12 @@ const fn everywhere(contract: &Contract) -> [Demand; 15] {
         ("follower.reaction", follower.reaction, reaction, ""),
         ("follower.braking", follower.braking, braking, hardest),
         ("ego.braking", ego.braking, braking, leader),
+        (
+            "ego.emergency",
+            ego.emergency,
+            from(ego.braking, other.braking),
+            ": it is no weaker than ego.braking, and no harder than other.braking",
+        ),
         ("ego.acceleration", ego.acceleration, launch, keeps),
         ("ego.go", ego.go, go, commanded),
         (

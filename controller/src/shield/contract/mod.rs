@@ -68,8 +68,12 @@ pub struct Ego {
     pub acceleration: f32,
     /// Acceleration that it achieves, below its limiter's speed, when it must clear a zone, in m/s², in (0, `acceleration`].
     pub go: f32,
-    /// Braking that it achieves, and the hardest that is commanded, in m/s², in (0, the others' `braking`].
+    /// Braking that it achieves, in m/s², in (0, the others' `braking`]. Plans count on it, and while there is one it is
+    /// the hardest that is commanded.
     pub braking: f32,
+    /// Braking that is commanded while no plan is safe, in m/s², in [`braking`, the others' `braking`]: all there is.
+    /// Nothing counts on it.
+    pub emergency: f32,
 }
 
 /// What another vehicle can do, at most. It follows its route forwards.
@@ -162,6 +166,7 @@ impl Contract {
             acceleration: 3.0,
             go: 3.0,
             braking: 3.0,
+            emergency: 3.0,
         },
         other: Other {
             max_speed: 15.0,

@@ -1,6 +1,6 @@
 //! A contract from a file: as valid as one that is built.
 
-use super::{Contract, ContractBuilder, ContractError, Ego, Follower, Other, Precedence};
+use super::{Contract, ContractBuilder, ContractError, Follower, Other, Precedence};
 use serde::Deserialize;
 
 /// The numbers as they are read, not yet validated.
@@ -14,11 +14,23 @@ pub(super) struct Numbers {
     position_error: f32,
     speed_error: f32,
     slack: f32,
-    ego: Ego,
+    ego: Vehicle,
     other: Other,
     follower: Follower,
     #[serde(default)]
     precedence: Option<Precedence>,
+}
+
+/// [`super::Ego`]; without a number for it, emergency braking is `braking`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Vehicle {
+    max_speed: f32,
+    acceleration: f32,
+    go: f32,
+    braking: f32,
+    #[serde(default)]
+    emergency: Option<f32>,
 }
 
 impl TryFrom<Numbers> for Contract {
@@ -32,7 +44,13 @@ impl TryFrom<Numbers> for Contract {
             position_error: read.position_error,
             speed_error: read.speed_error,
             slack: read.slack,
-            ego: read.ego,
+            ego: super::Ego {
+                max_speed: read.ego.max_speed,
+                acceleration: read.ego.acceleration,
+                go: read.ego.go,
+                braking: read.ego.braking,
+                emergency: read.ego.emergency.unwrap_or(read.ego.braking),
+            },
             other: read.other,
             follower: read.follower,
             precedence: read.precedence,

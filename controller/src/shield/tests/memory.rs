@@ -447,3 +447,17 @@ fn commands_that_follow_each_other_within_the_latency_may_all_still_act() {
         [-2.0; 2]
     );
 }
+
+#[test]
+fn without_a_plan_the_ego_brakes_with_all_there_is() {
+    let site = crossing();
+    let contract = WORST.to_builder().ego_emergency(7.0).build().unwrap();
+    let mut run = Run::new(&site, contract);
+    let hopeless = run.decide([50.0, 10.0], &[(1, [50.0, 5.0])], 3.0);
+    assert_eq!(hopeless.acceleration, -7.0, "{hopeless:?}");
+    assert!(run.shield.plan().is_none());
+    // With a plan nothing is harder than what plans count on.
+    let mut run = Run::new(&site, contract);
+    let planned = run.decide([36.0, 10.0], &[(1, [58.0, 0.0])], -20.0);
+    assert_eq!(planned.acceleration, -3.0, "{planned:?}");
+}

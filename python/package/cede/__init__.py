@@ -1,0 +1,50 @@
+"""Cede decides how a vehicle crosses an unsignalized intersection.
+
+The controller is here, and `evaluate`. Importing this registers the environments of `cede.envs`
+with Gymnasium. Recordings are in `cede.data`, the bridge to SUMO is in `cede.sumo`.
+"""
+
+from ._cede import (
+    Approach,
+    Conflict,
+    Contract,
+    Decision,
+    Drive,
+    Error,
+    Fault,
+    Junction,
+    JunctionBuilder,
+    Policy,
+    Prediction,
+    Reason,
+    Shield,
+    Track,
+    Vehicle,
+    View,
+    __version__,
+)
+from ._register import register
+from .evaluation import evaluate
+
+__all__ = [
+    "Approach",
+    "Conflict",
+    "Contract",
+    "Decision",
+    "Drive",
+    "Error",
+    "Fault",
+    "Junction",
+    "JunctionBuilder",
+    "Policy",
+    "Prediction",
+    "Reason",
+    "Shield",
+    "Track",
+    "Vehicle",
+    "View",
+    "__version__",
+    "evaluate",
+]
+
+register()

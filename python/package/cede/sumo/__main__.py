@@ -1,0 +1,98 @@
+"""`python -m cede.sumo`: drives a share of the vehicles of a SUMO network."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+
+from .._cede import Contract, Error, Policy
+from ._bridge import DRIVERS, INTENTS, Bridge, Settings, contract_named
+from ._network import Network
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command; the exit code is returned: 0 fine, 3 bad input."""
+    args = _parser().parse_args(arguments)
+    try:
+        summary = _run(args)
+    except Error as wrong:
+        print(f"error: {wrong}", file=sys.stderr)
+        return 3
+    if args.json:
+        print(json.dumps(summary, indent=2))
+    else:
+        for name, value in summary.items():
+            print(f"{name:<26} {_shown(value)}")
+    return 0
+
+
+def _run(args: argparse.Namespace) -> dict[str, float | int | None]:
+    settings = Settings(
+        driver=args.driver,
+        share=args.share,
+        ego=args.ego,
+        contract=_contract(args.contract),
+        shield=args.shield == "on",
+        step=args.step,
+        time=args.time,
+        seed=args.seed,
+        gui=args.gui,
+        stops=args.stops == "on",
+        intent=args.intent,
+        policy=Policy.load(args.weights) if args.weights else None,
+    )
+    settings.check()
+    bridge = Bridge(Network(args.net), settings, routes=args.routes, demand=args.demand)
+    return bridge.run().summary()
+
+
+def _contract(name: str | None) -> Contract | None:
+    if name is None:
+        return None
+    return Contract.load(name) if name.endswith(".toml") else contract_named(name)
+
+
+def _shown(value: float | int | None) -> str:
+    if value is None:
+        return "-"
+    return f"{value:.3f}" if isinstance(value, float) else str(value)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m cede.sumo", description=__doc__)
+    option = parser.add_argument
+    option("net", metavar="NET.net.xml", help="the network")
+    traffic = parser.add_mutually_exclusive_group(required=True)
+    traffic.add_argument("--routes", metavar="R.rou.xml", help="the vehicles and their routes")
+    traffic.add_argument(
+        "--demand", type=float, metavar="N", help="random vehicles an hour from every arm"
+    )
+    option("--share", type=float, default=1.0, help="share of the vehicles that are driven")
+    option("--ego", type=int, metavar="N", help="drive at most N vehicles")
+    option("--driver", choices=DRIVERS, default="cede")
+    option("--weights", metavar="FILE.cede", help="the policy of the driver cede")
+    option(
+        "--contract",
+        metavar="NAME|FILE.toml",
+        help="worst-case, all-way-stop, or a file [default: all-way-stop at all-way stops, "
+        "else worst-case]",
+    )
+    option("--shield", choices=("on", "off"), default="on")
+    option(
+        "--intent",
+        choices=INTENTS,
+        default="hidden",
+        help="whether others' turns are known, as by radio, or hidden until they are inside",
+    )
+    option("--stops", choices=("on", "off"), default="off", help="whether stop signs are obeyed")
+    option("--step", type=float, default=0.1, metavar="S", help="the contract's period")
+    option("--time", type=float, default=600.0, metavar="S", help="seconds to simulate")
+    option("--seed", type=int, default=0)
+    option("--gui", action="store_true", help="show it in SUMO's window")
+    option("--json", action="store_true", help="print one JSON object")
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,461 @@
+"""Vehicles of a running simulation, driven by Cede."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import os
+import random
+import sys
+import tempfile
+import time
+from dataclasses import dataclass, field
+from typing import Any
+
+from .._cede import Contract, Drive, Error, Policy, Shield, Track
+from ._demand import write_demand
+from ._measures import CRITICAL, STANDING, STUCK, Measures
+from ._network import MOST_CANDIDATES, STOPS, Movement, Network, Site, Stretch
+
+DRIVERS = ("cede", "profile", "sumo")
+INTENTS = ("hidden", "known")
+
+AT_LINE = 2.0
+"""Metres before its line from which a vehicle that stands is at it."""
+_NOTHING = 0
+"""Speed mode: nothing of SUMO's own acts on the vehicle."""
+_OWN = 31
+"""Speed mode: SUMO's default."""
+
+
+@dataclass
+class Settings:
+    """What a run is told, as the options of `python -m cede.sumo`."""
+
+    driver: str = "cede"
+    share: float = 1.0
+    ego: int | None = None
+    contract: Contract | None = None
+    shield: bool = True
+    step: float = 0.1
+    time: float = 600.0
+    seed: int = 0
+    gui: bool = False
+    policy: Policy | None = None
+    stops: bool = False
+    """Whether stop signs are obeyed; otherwise only the shield stops a vehicle."""
+    intent: str = "hidden"
+    """Whether others' turns are `"known"`, as by radio, or `"hidden"` until they are inside."""
+
+    def check(self) -> None:
+        """Raise what is out of its range."""
+        if self.driver not in DRIVERS:
+            raise Error(f"driver = `{self.driver}` is none of: {', '.join(DRIVERS)}")
+        if self.intent not in INTENTS:
+            raise Error(f"intent = `{self.intent}` is none of: {', '.join(INTENTS)}")
+        for name, low, high in (("share", 0.0, 1.0), ("time", 1.0, 1e6)):
+            value = getattr(self, name)
+            if not low <= value <= high:
+                raise Error(f"{name} = {value} is outside [{low:g}, {high:g}]")
+        period = (self.contract or Contract()).period
+        if not math.isclose(self.step, period):
+            raise Error(f"step = {self.step} s is not the contract's period, {period} s")
+
+
+@dataclass
+class Car:
+    """A vehicle of the simulation."""
+
+    name: str
+    number: int
+    chosen: bool
+    """Whether it is one of those that are driven, or measured beside them."""
+    lane: str = ""
+    position: float = 0.0
+    speed: float = 0.0
+    acceleration: float = 0.0
+    waited: float = 0.0
+    delay: float = 0.0
+    site: Site | None = None
+    movement: Movement | None = None
+    """The way that it takes, or has taken last."""
+    on_path: bool = False
+    front: float = 0.0
+    """Place (m) of its front bumper along its movement."""
+    s: float = 0.0
+    """Arc length (m) of its centre on its path."""
+    rate: float = 1.0
+    """Metres of the path for each metre of the front bumper."""
+    known: set[int] = field(default_factory=set)
+    """Numbers of the tracks that its shield has seen last."""
+    shield: Shield | None = None
+    approach: Any = None
+    stopped: bool = False
+    """Whether it has stopped where it has to."""
+
+
+@dataclass
+class Bridge:
+    """Runs a simulation of `network` and drives a share of its vehicles.
+
+    `routes` is a file of routes; without it, `demand` vehicles an hour come from every arm.
+    """
+
+    network: Network
+    settings: Settings
+    routes: str | os.PathLike[str] | None = None
+    demand: float | None = None
+    measures: Measures = field(default_factory=Measures)
+
+    def run(self) -> Measures:
+        """Run to the end; the measures are returned."""
+        self.settings.check()
+        if (self.routes is None) == (self.demand is None):
+            raise Error("give either routes or a demand")
+        with tempfile.TemporaryDirectory() as folder:
+            routes = self.routes
+            if routes is None:
+                routes = os.path.join(folder, "demand.rou.xml")
+                settings = self.settings
+                write_demand(
+                    self.network.net,
+                    routes,
+                    per_hour=self.demand,
+                    time=settings.time,
+                    seed=settings.seed,
+                )
+            elif not os.path.isfile(routes):
+                raise Error(f"{os.fspath(routes)}: no such file of routes")
+            self._start(os.fspath(routes))
+            try:
+                self._loop()
+            finally:
+                self.sumo.close()
+        return self.measures
+
+    def _start(self, routes: str) -> None:
+        if self.settings.gui:
+            import traci as sumo
+
+            program = "sumo-gui"
+        else:
+            # It may warn of other packages, on the stream where the numbers go.
+            with contextlib.redirect_stdout(sys.stderr):
+                import libsumo as sumo
+
+            program = "sumo"
+        self.sumo = sumo
+        options = {
+            "--net-file": self.network.file,
+            "--route-files": routes,
+            "--step-length": str(self.settings.step),
+            "--step-method.ballistic": "true",
+            "--seed": str(self.settings.seed),
+            "--collision.action": "warn",
+            "--collision.check-junctions": "true",
+            "--collision.mingap-factor": "0",
+            "--time-to-teleport": "-1",
+            "--no-step-log": "true",
+            "--no-warnings": "true",
+            "--default.speeddev": "0",
+        }
+        try:
+            sumo.start([program, *(word for pair in options.items() for word in pair)])
+        except Exception as wrong:
+            raise Error(f"SUMO does not start: {wrong}") from wrong
+
+    def _loop(self) -> None:
+        self.cars: dict[str, Car] = {}
+        self._random = random.Random(self.settings.seed)
+        self._numbers = 0
+        steps = round(self.settings.time / self.settings.step)
+        for _ in range(steps):
+            self.sumo.simulationStep()
+            self._account()
+            began = time.process_time()
+            decisions = self.measures.decisions
+            self._drive_all(self.sumo.simulation.getTime())
+            if self.measures.decisions > decisions:
+                self.measures.seconds += time.process_time() - began
+        self._finish()
+
+    # What has happened since the last step.
+
+    def _account(self) -> None:
+        simulation, measures = self.sumo.simulation, self.measures
+        for name in simulation.getDepartedIDList():
+            self.cars[name] = self._new(name)
+        for name in simulation.getArrivedIDList():
+            car = self.cars.pop(name)
+            measures.arrived += 1
+            measures.delays.append(car.delay)
+        for collision in simulation.getCollisions():
+            pair = frozenset((collision.collider, collision.victim))
+            measures.collisions.add(pair)
+            if any(name in self.cars and self.cars[name].chosen for name in pair):
+                measures.ego_collisions.add(pair)
+        for car in self.cars.values():
+            self._read(car)
+
+    def _new(self, name: str) -> Car:
+        vehicle, settings = self.sumo.vehicle, self.settings
+        length, width = vehicle.getLength(name), vehicle.getWidth(name)
+        if length > self.network.length or width > self.network.width:
+            raise Error(
+                f"vehicle {name} is {length} m × {width} m: the junctions are prepared for "
+                f"{self.network.length} m × {self.network.width} m"
+            )
+        self._numbers += 1
+        chosen = self._random.random() < settings.share
+        if settings.ego is not None:
+            chosen = chosen and self.measures.driven < settings.ego
+        self.measures.driven += chosen
+        speed = vehicle.getSpeed(name)
+        return Car(name, self._numbers % 65536, chosen, speed=speed)
+
+    def _read(self, car: Car) -> None:
+        vehicle, step = self.sumo.vehicle, self.settings.step
+        before, was = car.speed, car.acceleration
+        car.lane = vehicle.getLaneID(car.name)
+        car.position = vehicle.getLanePosition(car.name)
+        car.speed = vehicle.getSpeed(car.name)
+        car.acceleration = (car.speed - before) / step
+        car.waited = car.waited + step if car.speed < STANDING else 0.0
+        car.delay = vehicle.getTimeLoss(car.name) + vehicle.getDepartDelay(car.name)
+        self.measures.max_wait = max(self.measures.max_wait, car.waited)
+        if car.chosen:
+            self._measure(car, before, was)
+
+    def _measure(self, car: Car, before: float, was: float) -> None:
+        lateral = 0.0
+        if car.on_path:
+            lateral = car.speed**2 * car.movement.at(car.movement.curvature, car.front)
+        metres = (before + car.speed) / 2 * self.settings.step
+        self.measures.moved(metres, self.settings.step, (was, car.acceleration), lateral)
+
+    def _finish(self) -> None:
+        simulation, measures = self.sumo.simulation, self.measures
+        measures.demanded = measures.arrived + len(self.cars) + len(simulation.getPendingVehicles())
+        measures.stuck = sum(car.waited >= STUCK for car in self.cars.values())
+
+    # Who is where.
+
+    def _drive_all(self, now: float) -> None:
+        for car in self.cars.values():
+            self._follow(car)
+        if self.settings.driver == "sumo":
+            return
+        driven = [car for car in self.cars.values() if car.chosen and car.on_path]
+        there: dict[str, list[Car]] = {car.site.name: [] for car in driven}
+        for car in self.cars.values():
+            for site in self.network.using.get(car.lane, ()):
+                if site.name in there:
+                    there[site.name].append(car)
+        self._tracks: dict[tuple[str, str], Track | None] = {}
+        for car in driven:
+            relevant = self._relevant(car, there[car.site.name])
+            tracks = [self._track(car.site, other) for other in relevant]
+            self._drive(car, now, [track for track in tracks if track is not None])
+
+    def _relevant(self, car: Car, there: list[Car]) -> list[Car]:
+        """The others at the junction without those that others hold back.
+
+        Nobody overtakes in a lane: who is behind another on its way to the junction reaches no
+        zone before it, and may take every path that the one behind may take. In the vehicle's own
+        lane that is the one just ahead; whoever is behind the vehicle is held back by it.
+        """
+        first: dict[str, Car] = {}
+        inside = []
+        for other in there:
+            if other is car:
+                continue
+            if car.site is not self.network.entering.get(other.lane):
+                inside.append(other)
+            elif other.lane == car.lane and other.position < car.position:
+                continue
+            else:
+                known = first.get(other.lane)
+                ahead = known is None or other.position > known.position
+                if ahead != (known is not None and other.lane == car.lane):
+                    first[other.lane] = other
+        return inside + list(first.values())
+
+    def _track(self, site: Site, car: Car) -> Track | None:
+        """The vehicle as others see it at this step; `None` if it is on no path."""
+        key = (site.name, car.name)
+        if key not in self._tracks:
+            self._tracks[key] = self._new_track(site, car)
+        return self._tracks[key]
+
+    def _new_track(self, site: Site, car: Car) -> Track | None:
+        """The vehicle on every path that its lane belongs to."""
+        places = site.on_lane[car.lane]
+        if len(places) > 1 and car.site is site:
+            told = self.settings.intent == "known" or car.lane == car.movement.outgoing
+            if told:
+                places = [place for place in places if place[0] is car.movement] or places
+        candidates, rate = [], 1.0
+        for movement, stretch in places[:MOST_CANDIDATES]:
+            front = _front(car, stretch)
+            s, rate = movement.place(front)
+            if front >= 0.0 and s < movement.length:
+                candidates.append((movement.path, s))
+        if not candidates:
+            return None
+        (path, s), *others = candidates
+        vehicle = site.junction.vehicle(path, s, car.speed * rate)
+        return Track(car.number, path, vehicle, or_on=others)
+
+    def _follow(self, car: Car) -> None:
+        """Bring a vehicle's own path and place on it up to date."""
+        ahead = self.network.entering.get(car.lane)
+        if car.movement is not None:
+            stretch = next((s for s in car.movement.stretches if s.lane == car.lane), None)
+            car.on_path = stretch is not None and self._put(car, car.movement, stretch)
+            if car.on_path and (ahead in (None, car.site) or car.s < car.movement.clear):
+                return
+        if car.shield is not None and (ahead is not None or not car.on_path):
+            self._release(car)
+        if ahead is not None and ahead is not car.site:
+            self._enter(car, ahead)
+
+    def _enter(self, car: Car, site: Site) -> None:
+        movement, stretch = self._way(car, site)
+        if movement is not None and self._put(car, movement, stretch):
+            car.site, car.movement, car.on_path = site, movement, True
+            car.stopped = not (self.settings.stops and movement.state in STOPS)
+
+    @staticmethod
+    def _put(car: Car, movement: Movement, stretch: Stretch) -> bool:
+        """Put a vehicle where it is on a movement; whether that is on its path."""
+        car.front = _front(car, stretch)
+        car.s, car.rate = movement.place(car.front)
+        return car.front >= 0.0 and car.s < movement.length - 1.0
+
+    def _way(self, car: Car, site: Site) -> tuple[Movement, Stretch] | tuple[None, None]:
+        """The movement that the vehicle's route takes from its lane."""
+        vehicle = self.sumo.vehicle
+        route, index = vehicle.getRoute(car.name), vehicle.getRouteIndex(car.name)
+        following = route[index + 1] if 0 <= index < len(route) - 1 else None
+        for movement, stretch in site.on_lane[car.lane]:
+            if movement.incoming == car.lane and movement.to_edge == following:
+                return movement, stretch
+        return None, None
+
+    def _release(self, car: Car) -> None:
+        """Hand the vehicle back to SUMO."""
+        self.sumo.vehicle.setSpeedMode(car.name, _OWN)
+        self.sumo.vehicle.setSpeed(car.name, -1.0)
+        car.shield = car.approach = None
+        car.known = set()
+
+    def _way(self, car: Car, site: Site) -> tuple[Movement, Stretch] | tuple[None, None]:
+        """The movement that the vehicle's route takes from its lane."""
+        vehicle = self.sumo.vehicle
+        route, index = vehicle.getRoute(car.name), vehicle.getRouteIndex(car.name)
+        following = route[index + 1] if 0 <= index < len(route) - 1 else None
+        for movement, stretch in site.on_lane[car.lane]:
+            if movement.incoming == car.lane and movement.to_edge == following:
+                return movement, stretch
+        return None, None
+
+    # What it does.
+
+    def _drive(self, car: Car, now: float, tracks: list[Track]) -> None:
+        ego = car.site.junction.vehicle(car.movement.path, car.s, car.speed * car.rate)
+        if car.shield is None and not self._take_over(car, now, ego, tracks):
+            return
+        self._forget(car, {track.number for track in tracks})
+        wanted = self._profile(car)
+        if car.approach is not None:
+            wanted = min(wanted, car.approach.proposal(ego, tracks))
+        measures = self.measures
+        measures.decisions += 1
+        if self.settings.shield:
+            decision = car.shield.filter(now, ego, tracks, wanted)
+            wanted = decision.acceleration
+            measures.shielded += decision.cause != "policy"
+            measures.no_plan += decision.no_plan
+            measures.breaches += decision.breach is not None
+        self._command(car, max(0.0, ego.speed + wanted * self.settings.step))
+
+    def _command(self, car: Car, speed: float) -> None:
+        """Have the centre of the vehicle as fast as this (m/s) at the end of the step."""
+        moved = (car.speed + speed) / 2 * self.settings.step
+        _, rate = car.movement.place(car.front + moved)
+        self.sumo.vehicle.setSpeed(car.name, speed / rate)
+
+    @staticmethod
+    def _forget(car: Car, numbers: set[int]) -> None:
+        """Nothing is hidden here: who is not seen any more is gone."""
+        for number in car.known - numbers:
+            car.shield.forget(number)
+        car.known = numbers
+
+    def _take_over(self, car: Car, now: float, ego: Any, tracks: list[Track]) -> bool:
+        """Take control over, if there is a safe plan."""
+        contract = self.settings.contract or _contract_of(car.site)
+        shield = Shield(car.site.junction, car.movement.path, contract)
+        if self.settings.shield:
+            try:
+                shield.ready(now, ego, tracks)
+            except Error:
+                self.measures.refused += 1
+                return False
+        car.shield = shield
+        if self.settings.driver == "cede":
+            drive = Drive(self.settings.policy, contract)
+            car.approach = drive.enter(car.site.junction, car.movement.path)
+        self.sumo.vehicle.setSpeedMode(car.name, _NOTHING)
+        return True
+
+    def _profile(self, car: Car) -> float:
+        """The acceleration (m/s²) of a plain profile: limits, curves, stop signs, the leader."""
+        movement, braking, step = car.movement, self.network.braking, self.settings.step
+        allowed = movement.at(movement.limit, car.front + car.speed * step)
+        wanted = max(-3.0, min(3.0 * (1.0 - (car.speed / 14.0) ** 4), (allowed - car.speed) / 0.5))
+        if not car.stopped:
+            short = movement.line - car.s
+            car.stopped = car.speed < STANDING and short < AT_LINE
+            wanted = min(wanted, _stopping(car.speed, short - 0.2, braking))
+        leader = self.sumo.vehicle.getLeader(car.name, 50.0)
+        other = self.cars.get(leader[0]) if leader else None
+        # SUMO also names those who are about to merge: they are the shield's matter.
+        if other is None or all(stretch.lane != other.lane for stretch in movement.stretches):
+            return wanted
+        return min(wanted, self._behind(car, other, leader[1]))
+
+    def _behind(self, car: Car, leader: Car, gap: float) -> float:
+        """The intelligent driver model behind a leader."""
+        closing = car.speed - leader.speed
+        if closing > 0.0 and gap + 2.5 < CRITICAL * closing:
+            self.measures.critical += 1
+        wished = 1.0 * car.speed + car.speed * closing / (2 * math.sqrt(3.0 * self.network.braking))
+        return 3.0 * (1.0 - (max(0.0, wished) / max(gap, 0.3)) ** 2) if wished > gap / 2 else 3.0
+
+
+def _front(car: Car, stretch: Stretch) -> float:
+    """Place (m) of the front bumper along the movement of a stretch."""
+    return stretch.start + car.position * stretch.scale
+
+
+def _stopping(speed: float, room: float, braking: float) -> float:
+    """The acceleration (m/s²) that stops in `room` metres: none before it must brake by then."""
+    if room < 1.0:
+        return (0.8 * max(room, 0.0) - speed) / 0.3
+    needed = speed**2 / (2 * room)
+    return -needed if needed > 0.8 * braking else math.inf
+
+
+def contract_named(name: str) -> Contract:
+    """A contract by its name, with the errors of a vehicle's place on its path here.
+
+    SUMO moves a vehicle's front bumper along its lanes; where these bend, its centre is a little
+    faster or slower than the front.
+    """
+    return Contract(name, position_error=0.05, speed_error=0.1)
+
+
+def _contract_of(site: Site) -> Contract:
+    """First come, first served where everybody stops; elsewhere nobody's courtesy is assumed."""
+    return contract_named("all-way-stop" if site.kind == "allway_stop" else "worst-case")

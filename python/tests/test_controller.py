@@ -1,0 +1,173 @@
+import gc
+import math
+
+import numpy as np
+import pytest
+
+import cede
+
+LEFT = [(-40.0, -2.0), (-6.0, -2.0), (0.0, 0.0), (2.0, 6.0), (2.0, 40.0)]
+ONCOMING = np.array([[40.0, 2.0], [-40.0, 2.0]])
+
+
+def crossing():
+    builder = cede.Junction.builder()
+    left = builder.path(LEFT, length=4.6, width=1.9)
+    oncoming = builder.path(ONCOMING, length=4.6, width=1.9)
+    builder.right_of_way(oncoming, left)
+    return builder.build(), left, oncoming
+
+
+def test_a_decision_and_its_reason():
+    junction, left, oncoming = crossing()
+    drive = cede.Drive(contract=cede.Contract(ego_braking=4.0))
+    approach = drive.enter(junction, left)
+    tracks = [cede.Track(17, oncoming, junction.vehicle(oncoming, 20.0, 8.0))]
+    ego = junction.vehicle(left, 15.0, 6.0)
+    assert approach.ready(1.0, ego, tracks) > 0.0
+    decision = approach.decide(1.0, ego, tracks)
+    assert -4.0 <= decision.acceleration <= 3.0
+    assert decision.cause in ("policy", "shielded")
+    assert decision.prediction.other == 17
+    assert 0.0 <= decision.prediction.svo <= math.pi / 2
+    assert decision.fault is None and decision.breach is None
+
+
+def test_a_car_that_may_arrive_first_is_the_reason():
+    junction, left, oncoming = crossing()
+    shield = cede.Shield(junction, left)
+    tracks = [cede.Track(7, oncoming, junction.vehicle(oncoming, 12.0, 9.0))]
+    now, s, speed = 0.0, 18.0, 7.0
+    seen = []
+    for step in range(40):
+        decision = shield.filter(now, junction.vehicle(left, s, speed), tracks, 3.0)
+        seen.append(decision)
+        speed = max(0.0, speed + 0.1 * decision.acceleration)
+        s, now = s + 0.1 * speed, 0.1 * (step + 1)
+    shielded = [d for d in seen if d.cause == "shielded"]
+    assert shielded and all(d.action in ("nearest", "remembered") for d in shielded)
+    reason = shielded[0].reason
+    assert reason.other == 7
+    assert reason.kind in ("arrival", "entry", "stop")
+    assert str(reason) in str(shielded[0])
+    assert all(math.isfinite(value) for value in reason.numbers.values())
+
+
+def test_the_approach_keeps_its_junction_alive():
+    junction, left, oncoming = crossing()
+    approach = cede.Drive().enter(junction, left)
+    ego = junction.vehicle(left, 15.0, 6.0)
+    track = cede.Track(1, oncoming, junction.vehicle(oncoming, 20.0, 8.0))
+    before = cede.Drive().enter(junction, left).decide(0.0, ego, [track]).acceleration
+    del junction
+    gc.collect()
+    assert approach.decide(0.0, ego, [track]).acceleration == before
+
+
+def test_a_junction_says_how_paths_meet():
+    junction, left, oncoming = crossing()
+    conflict = junction.conflict(left, oncoming)
+    assert (conflict.kind, conflict.right_of_way) == ("crossing", "other")
+    kind, (enters, leaves), _ = conflict.zones[0]
+    assert kind == "crossing" and enters < leaves
+    assert junction.line(left) == pytest.approx(enters)
+    assert junction.points(oncoming).shape == (2, 2)
+    assert junction.length(oncoming) == 80.0
+    assert junction.project(oncoming, 0.0, 5.0) == 40.0
+    assert len(junction) == 2
+
+
+def test_many_paths_have_room():
+    builder = cede.Junction.builder()
+    for y in range(60):
+        builder.path([(-40.0, 4.0 * y), (40.0, 4.0 * y)])
+    junction = builder.build()
+    assert len(junction) == 60
+    cede.Drive().enter(junction, 59)
+
+
+def test_a_contract_from_keywords_names_and_toml():
+    contract = cede.Contract("all-way-stop", latency=0.05, precedence={"distance": 10.0})
+    assert contract.latency == 0.05
+    assert contract.precedence["distance"] == 10.0
+    assert contract.precedence["patience"] == 15
+    assert cede.Contract.from_toml(contract.to_toml()) == contract
+    assert contract.replace(precedence=None).precedence is None
+    assert cede.Contract().to_dict()["other_max_speed"] == 15.0
+    assert "ego_braking=3" in repr(cede.Contract())
+
+
+def test_a_contract_from_a_file(tmp_path):
+    file = tmp_path / "contract.toml"
+    file.write_text(cede.Contract().to_toml())
+    assert cede.Contract.load(file) == cede.Contract()
+    file.write_text(cede.Contract().to_toml().replace("jitter = 0.0", "jitter = 9.0"))
+    with pytest.raises(cede.Error, match=r"contract\.toml.*jitter = 9 is outside \[0, 0\.0125\]"):
+        cede.Contract.load(file)
+    with pytest.raises(cede.Error, match="missing.toml"):
+        cede.Contract.load(tmp_path / "missing.toml")
+
+
+def test_a_number_out_of_range_is_named_with_value_and_range():
+    with pytest.raises(cede.Error, match=r"ego\.braking = 9 is outside \(0, 8\]") as caught:
+        cede.Contract(ego_braking=9)
+    assert (caught.value.field, caught.value.value) == ("ego.braking", 9.0)
+    assert isinstance(caught.value, ValueError)
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (
+            lambda: cede.Contract("best-case"),
+            "base = `best-case` is none of: worst-case, all-way-stop",
+        ),
+        (lambda: cede.Contract(brakes=1.0), "no number `brakes`; it has: period"),
+        (lambda: cede.Contract(period="x"), "period = x is not a number"),
+        (lambda: cede.Junction.builder().build(), "a junction without paths"),
+        (
+            lambda: cede.Junction.builder().path([(0, 0)]),
+            "points of path 0: a route needs two points",
+        ),
+        (lambda: cede.Junction.builder().path(np.zeros((3, 3))), r"shape \[3, 3\] is not \(n, 2\)"),
+        (lambda: cede.Junction.builder().path([(0, 0), (1, 0)], kind="tram"), "kind = `tram`"),
+        (lambda: cede.Junction.builder().right_of_way(0, 1), "path 0: there are 0"),
+        (lambda: crossing()[0].length(5), "path 5: there are 2"),
+        (lambda: cede.Drive().enter(crossing()[0], 9), "path 9 is not one that the junction lets"),
+        (lambda: cede.Drive(part="right"), "part = `right` is none of: left, other"),
+        (lambda: cede.Policy.load("none.cede"), "cannot read none.cede"),
+        (lambda: cede.Policy.from_onnx("none.onnx"), "none.onnx"),
+    ],
+)
+def test_bad_input_is_one_clear_exception(call, said):
+    with pytest.raises(cede.Error, match=said):
+        call()
+
+
+def test_a_sharp_turn_is_refused_when_the_junction_is_built():
+    builder = cede.Junction.builder()
+    builder.path([(0, 0), (10, 0), (0, 1)])
+    with pytest.raises(cede.Error, match=r"path 0: a turn of .* at point 1, more than 90"):
+        builder.build()
+
+
+def test_a_wrong_observation_is_a_fault_not_an_exception():
+    junction, left, _ = crossing()
+    approach = cede.Drive().enter(junction, left)
+    ego = junction.vehicle(left, 15.0, 6.0)
+    decision = approach.decide(0.0, cede.Vehicle(ego.s, 300.0, ego.x, ego.y, ego.heading))
+    assert decision.cause == "fallback" and decision.no_plan
+    assert (decision.fault.kind, decision.fault.track) == ("input", None)
+    assert decision.fault.value == 300.0
+    assert decision.fault.range[1] == 100.0
+    assert "speed (m/s) 300 is outside" in str(decision.fault)
+
+
+def test_the_embedded_policy_and_its_replacement():
+    policy = cede.Policy.embedded()
+    assert (policy.features, policy.perspective) == ("scene", "ego")
+    junction, left, _ = crossing()
+    approach = cede.Drive(policy).enter(junction, left)
+    approach.set_policy(policy)
+    approach.set_contract(cede.Contract("all-way-stop"))
+    assert approach.contract.precedence is not None

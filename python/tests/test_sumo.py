@@ -1,0 +1,163 @@
+import json
+import os
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+import cede
+
+sumolib = pytest.importorskip("sumolib", reason="no SUMO (pip install 'cede[sumo]')")
+pytest.importorskip("libsumo", reason="no SUMO (pip install 'cede[sumo]')")
+
+from cede.sumo import Bridge, Network, Settings
+from cede.sumo.__main__ import main
+
+ARMS = {"N": (0, 200), "S": (0, -200), "E": (200, 0), "W": (-200, 0)}
+
+
+def netconvert(folder, kind, lanes=1, more=()):
+    """A junction of four arms."""
+    program = shutil.which("netconvert", path=os.path.dirname(sys.executable))
+    program = program or shutil.which("netconvert")
+    nodes = [f'<node id="{name}" x="{x}" y="{y}"/>' for name, (x, y) in ARMS.items()]
+    nodes.append(f'<node id="C" x="0" y="0" type="{kind}"/>')
+    edges = []
+    for name in ARMS:
+        for ends in ((name, "C"), ("C", name)):
+            priority = 2 if name in "EW" else 1
+            edges.append(
+                f'<edge id="{"".join(ends)}" from="{ends[0]}" to="{ends[1]}" numLanes="{lanes}" '
+                f'speed="13.89" priority="{priority}"/>'
+            )
+    (folder / "n.nod.xml").write_text(f"<nodes>{''.join(nodes)}</nodes>")
+    (folder / "n.edg.xml").write_text(f"<edges>{''.join(edges)}</edges>")
+    net = folder / f"{kind}.net.xml"
+    files = ["-n", folder / "n.nod.xml", "-e", folder / "n.edg.xml", "-o", net]
+    options = ["--no-turnarounds", *more]
+    subprocess.run([program, *map(str, files), *options], check=True, capture_output=True)
+    return net
+
+
+def run(net, **settings):
+    demand = settings.pop("demand", 150.0)
+    bridge = Bridge(Network(net), Settings(**{"time": 120.0, **settings}), demand=demand)
+    return bridge.run().summary()
+
+
+def test_a_junction_becomes_paths(tmp_path):
+    (site,) = Network(netconvert(tmp_path, "right_before_left")).sites
+    assert (site.name, site.kind, len(site.movements)) == ("C", "right_before_left", 12)
+    left = next(m for m in site.movements if (m.incoming, m.outgoing) == ("SC_0", "CW_0"))
+    straight = next(m for m in site.movements if (m.incoming, m.outgoing) == ("NC_0", "CS_0"))
+    conflict = site.junction.conflict(left.path, straight.path)
+    assert conflict.kind == "crossing"
+    # Who comes from the right goes first; oncoming straight traffic goes before a left turn.
+    assert conflict.right_of_way == "other"
+    assert site.junction.length(left.path) == pytest.approx(left.length, abs=0.02)
+    # A turn is slower than the limit, a straight way is not.
+    assert min(left.limit) < 8.0 and min(straight.limit) == pytest.approx(13.89)
+
+
+KINDS = ("allway_stop", "priority", "priority_stop", "right_before_left", "unregulated")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("driver", ["profile", "cede"])
+def test_every_kind_of_junction_is_driven_without_a_collision(tmp_path, kind, driver):
+    summary = run(netconvert(tmp_path, kind), driver=driver)
+    assert summary["driven"] > 5
+    assert summary["collisions"] == 0
+    assert summary["us_per_decision"] > 0.0
+
+
+def test_the_profile_brings_light_traffic_through_an_all_way_stop(tmp_path):
+    net = netconvert(tmp_path, "allway_stop")
+    shielded = run(net, driver="profile", time=300.0, demand=60.0)
+    sumo = run(net, driver="sumo", time=300.0, demand=60.0)
+    assert shielded["arrived"] == sumo["arrived"] > 5
+    assert (shielded["collisions"], shielded["stuck"], shielded["breaches"]) == (0, 0, 0)
+
+
+def test_a_share_is_driven_and_a_number_of_egos(tmp_path):
+    net = netconvert(tmp_path, "priority")
+    assert run(net, driver="profile", ego=1)["driven"] == 1
+    half = run(net, driver="profile", share=0.5)
+    assert 0 < half["driven"] < half["demanded"]
+
+
+def test_the_same_seed_gives_the_same_run(tmp_path):
+    net = netconvert(tmp_path, "allway_stop")
+    one, two = (run(net, driver="cede", seed=3) for _ in range(2))
+    one.pop("us_per_decision"), two.pop("us_per_decision")
+    assert one == two
+
+
+def test_lanes_and_a_roundabout(tmp_path):
+    assert run(netconvert(tmp_path, "priority", lanes=2), driver="profile")["collisions"] == 0
+    program = shutil.which("netgenerate", path=os.path.dirname(sys.executable)) or "netgenerate"
+    net = tmp_path / "grid.net.xml"
+    options = ["--grid", "--grid.number", "3", "--grid.length", "150", "--no-turnarounds"]
+    options += ["--grid.attach-length", "120", "-j", "allway_stop", "-o", str(net)]
+    subprocess.run([program, *options], check=True, capture_output=True)
+    assert len(Network(net).sites) == 9
+    assert run(net, driver="profile", demand=60.0)["collisions"] == 0
+
+
+def test_the_command_line(tmp_path, capsys):
+    net = netconvert(tmp_path, "allway_stop")
+    arguments = [str(net), "--demand", "100", "--driver", "profile", "--time", "60", "--json"]
+    assert main(arguments) == 0
+    out = capsys.readouterr().out
+    summary = json.loads(out[out.index("{") :])
+    assert {"arrived", "mean_delay_s", "us_per_decision", "ttc_below_1s"} <= set(summary)
+    contract = tmp_path / "c.toml"
+    contract.write_text("period = 9")
+    assert main([*arguments, "--contract", str(contract)]) == 3
+    assert "c.toml" in capsys.readouterr().err
+
+
+def test_bad_networks_and_options_are_one_clear_exception(tmp_path):
+    with pytest.raises(cede.Error, match="none.net.xml: no such network"):
+        Network(tmp_path / "none.net.xml")
+    wrong = tmp_path / "wrong.net.xml"
+    wrong.write_text("no xml")
+    with pytest.raises(cede.Error, match="wrong.net.xml: not a network"):
+        Network(wrong)
+    with pytest.raises(cede.Error, match="no junction of a type that is driven"):
+        Network(netconvert(tmp_path, "traffic_light"))
+    plain = netconvert(tmp_path, "priority", more=["--no-internal-links"])
+    with pytest.raises(cede.Error, match="junction C, connection .* no internal lanes"):
+        Network(plain)
+    net = netconvert(tmp_path, "allway_stop")
+    with pytest.raises(cede.Error, match=r"share = 2 is outside \[0, 1\]"):
+        run(net, share=2)
+    with pytest.raises(cede.Error, match="step = 0.2 s is not the contract's period, 0.1 s"):
+        run(net, step=0.2)
+    with pytest.raises(cede.Error, match="no such file of routes"):
+        Bridge(Network(net), Settings(), routes=tmp_path / "r.rou.xml").run()
+
+
+def test_a_vehicle_that_is_too_long_is_named(tmp_path):
+    routes = tmp_path / "r.rou.xml"
+    routes.write_text(
+        '<routes><vType id="t" length="12" width="2.5"/>'
+        '<vehicle id="bus" type="t" depart="0"><route edges="NC CS"/></vehicle></routes>'
+    )
+    net = Network(netconvert(tmp_path, "allway_stop"))
+    with pytest.raises(cede.Error, match=r"vehicle bus is 12.0 m × 2.5 m: .* for 5.0 m × 1.8 m"):
+        Bridge(net, Settings(time=5.0), routes=routes).run()
+    bridge = Bridge(Network(net.file, length=12.0, width=2.5), Settings(time=60.0), routes=routes)
+    assert bridge.run().arrived == 1
+
+
+def test_a_vehicle_that_leaves_the_network_is_let_go(tmp_path):
+    routes = tmp_path / "r.rou.xml"
+    routes.write_text(
+        '<routes><vehicle id="a" depart="0" departSpeed="max" arrivalPos="50">'
+        '<route edges="NC CS"/></vehicle></routes>'
+    )
+    net = Network(netconvert(tmp_path, "allway_stop"))
+    summary = Bridge(net, Settings(driver="profile", time=60.0), routes=routes).run().summary()
+    assert (summary["arrived"], summary["demanded"]) == (1, 1)
