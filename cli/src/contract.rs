@@ -89,6 +89,11 @@ mod tests {
             assert_eq!(read(&file).unwrap().0, contract, "{name}");
             assert_eq!(read(name).unwrap().0, contract);
         }
+        let car = format!(
+            "{}/../contracts/passenger-car.toml",
+            env!("CARGO_MANIFEST_DIR")
+        );
+        assert!(read(&car).unwrap().0.ego().emergency > 3.0);
     }
 
     #[test]

@@ -23,7 +23,7 @@ type Number = (
     fn(ContractBuilder, f32) -> ContractBuilder,
 );
 
-const NUMBERS: [Number; 15] = [
+const NUMBERS: [Number; 16] = [
     ("period", Numbers::period, ContractBuilder::period),
     ("latency", Numbers::latency, ContractBuilder::latency),
     ("jitter", Numbers::jitter, ContractBuilder::jitter),
@@ -53,6 +53,11 @@ const NUMBERS: [Number; 15] = [
         "ego_braking",
         |c| c.ego().braking,
         ContractBuilder::ego_braking,
+    ),
+    (
+        "ego_emergency",
+        |c| c.ego().emergency,
+        ContractBuilder::ego_emergency,
     ),
     (
         "other_max_speed",
@@ -94,8 +99,14 @@ impl Contract {
     #[pyo3(name = "replace", signature = (**numbers))]
     fn with_numbers(&self, py: Python<'_>, numbers: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
         let mut builder = self.0.to_builder();
-        for (name, value) in numbers.into_iter().flatten() {
-            builder = set(&self.0, builder, &name.extract::<String>()?, &value)?;
+        // `ego_braking` sets both; whoever names the other one, too, means it.
+        for last in [false, true] {
+            for (name, value) in numbers.into_iter().flatten() {
+                let name = name.extract::<String>()?;
+                if (name == "ego_emergency") == last {
+                    builder = set(&self.0, builder, &name, &value)?;
+                }
+            }
         }
         let built = builder.build().map_err(|wrong| refused(py, &wrong))?;
         Ok(Self(built))

@@ -15,7 +15,7 @@ use cede_controller::{
 };
 
 /// Words of eight bytes of a cede_approach.
-pub const CEDE_APPROACH_WORDS: usize = 240;
+pub const CEDE_APPROACH_WORDS: usize = 328;
 
 /// One vehicle on its way through one junction: plan, precedence and tracks. The next junction begins with a new one. It
 /// refers to its junction and to its policy's weights.

@@ -29,8 +29,10 @@ pub struct cede_contract {
     pub ego_acceleration: f32,
     /// Acceleration that the ego achieves when it must clear a zone, in m/s^2, in [0.01, ego_acceleration].
     pub ego_go: f32,
-    /// Braking that the ego achieves, and the hardest that is commanded, in m/s^2, in (0, other_braking].
+    /// Braking that the ego achieves, in m/s^2, in (0, other_braking]; the hardest that is commanded while there is a plan.
     pub ego_braking: f32,
+    /// Braking that is commanded while no plan is safe, in m/s^2, in [ego_braking, other_braking]; 0: ego_braking.
+    pub ego_emergency: f32,
     /// Highest speed of another in m/s, in (0, 100].
     pub other_max_speed: f32,
     /// Hardest acceleration of another in m/s^2, in (0, 20].
@@ -82,6 +84,7 @@ pub enum cede_contract_field {
     PrecedenceDistance = 16,
     PrecedenceBraking = 17,
     PrecedencePatience = 18,
+    EgoEmergency = 19,
     Other = 255,
 }
 
@@ -108,6 +111,7 @@ pub(crate) const CONTRACT_FIELD: &[(u8, &CStr)] = {
         (Field::PrecedenceDistance as u8, c"precedence.distance"),
         (Field::PrecedenceBraking as u8, c"precedence.braking"),
         (Field::PrecedencePatience as u8, c"precedence.patience"),
+        (Field::EgoEmergency as u8, c"ego.emergency"),
         (Field::Other as u8, c"other"),
     ]
 };
@@ -156,6 +160,11 @@ fn sound(numbers: &cede_contract) -> Result<Contract, ContractError> {
         numbers.precedence_braking,
         numbers.precedence_patience,
     );
+    let emergency = if numbers.ego_emergency == 0.0 {
+        numbers.ego_braking
+    } else {
+        numbers.ego_emergency
+    };
     Contract::builder()
         .period(numbers.period)
         .latency(numbers.latency)
@@ -167,6 +176,7 @@ fn sound(numbers: &cede_contract) -> Result<Contract, ContractError> {
         .ego_acceleration(numbers.ego_acceleration)
         .ego_go(numbers.ego_go)
         .ego_braking(numbers.ego_braking)
+        .ego_emergency(emergency)
         .other_max_speed(numbers.other_max_speed)
         .other_acceleration(numbers.other_acceleration)
         .other_braking(numbers.other_braking)
@@ -192,6 +202,11 @@ pub fn plain(contract: &Contract) -> cede_contract {
         ego_acceleration: ego.acceleration,
         ego_go: ego.go,
         ego_braking: ego.braking,
+        ego_emergency: if ego.emergency > ego.braking {
+            ego.emergency
+        } else {
+            0.0
+        },
         other_max_speed: other.max_speed,
         other_acceleration: other.acceleration,
         other_braking: other.braking,

@@ -28,7 +28,8 @@ fn bytes<T>() -> impl Strategy<Value = Vec<u8>> {
 }
 
 fn admissible(contract: &cede_contract, acceleration: f32) -> bool {
-    (-contract.ego_braking..=contract.ego_acceleration).contains(&acceleration)
+    (-contract.ego_braking.max(contract.ego_emergency)..=contract.ego_acceleration)
+        .contains(&acceleration)
 }
 
 proptest! {
@@ -81,9 +82,10 @@ proptest! {
             (&mut contract.other_max_speed, known.other_max_speed), (&mut contract.other_acceleration, known.other_acceleration),
             (&mut contract.other_braking, known.other_braking), (&mut contract.follower_reaction, known.follower_reaction),
             (&mut contract.follower_braking, known.follower_braking),
+            (&mut contract.ego_emergency, known.ego_emergency),
         ];
         for (i, (number, known)) in pairs.into_iter().enumerate() {
-            if usual % 17 != i as u32 {
+            if usual % 18 != i as u32 {
                 *number = known;
             }
         }

@@ -35,6 +35,7 @@ class Contract:
     ego_acceleration: float
     ego_go: float
     ego_braking: float
+    ego_emergency: float
     other_max_speed: float
     other_acceleration: float
     other_braking: float
@@ -55,6 +56,7 @@ class Contract:
         ego_acceleration: float = ...,
         ego_go: float = ...,
         ego_braking: float = ...,
+        ego_emergency: float = ...,
         other_max_speed: float = ...,
         other_acceleration: float = ...,
         other_braking: float = ...,
