@@ -1,5 +1,5 @@
 (* What every theorem rests on: check.sh compares it with axioms.txt. *)
-Require Import Shield Merge Pair Choice Limit Precedence Turns Order Controls Passage.
+Require Import Ego Shield Merge Pair Choice Limit Precedence Turns Order Controls Passage.
 Print Assumptions verified_plans_keep_apart.
 Print Assumptions at_most_one_comes_in_ahead.
 Print Assumptions shielded_vehicles_keep_apart.
@@ -8,8 +8,8 @@ Print Assumptions chosen_is_verified.
 Print Assumptions kept_is_verified.
 Print Assumptions may_go.
 Print Assumptions keeps_limit.
-Print Assumptions reduced_go_may_be_slow.
-Print Assumptions reduced_go_is_fast_enough.
+Print Assumptions braking_first_matters.
+Print Assumptions plan_is_followed.
 Print Assumptions arrivals_exclude.
 Print Assumptions arrivals_exclude_equals.
 Print Assumptions surely_at_most_perhaps.

@@ -73,8 +73,7 @@ Proof.
   assert (g0 : 0 < ego_go k) by (destruct ok; lra).
   set (C := Rmax (unlimited k) (speed r)).
   assert (C0 : 0 < C).
-  { apply Rlt_le_trans with (unlimited k); [| apply Rmax_l]. rewrite unlimited_is.
-    apply Rlt_le_trans with (2 := Rmax_r _ _). lra. }
+  { apply Rlt_le_trans with (unlimited k); [| apply Rmax_l]. rewrite unlimited_is. destruct ok. lra. }
   set (lim := (C - speed r) * (C + speed r) / (ego_go k + ego_go k)).
   assert (left : Rmax (x - distance r) 0 <= Rmax (y - distance r) 0) by (apply Rle_max_compat_r; lra).
   apply Rplus_le_compat.

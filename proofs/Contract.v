@@ -35,12 +35,13 @@ Definition switching k := latency k + 4 * jitter k.
 
 (* The speed below which neither limiter nor speed limit holds the ego back. *)
 Definition unheld k :=
-  ego_max_speed k - speed_error k - speed_error k - ego_acceleration k * switching k - ego_go k * period k.
+  ego_max_speed k - speed_error k - speed_error k - (ego_acceleration k + ego_braking k) * switching k
+  - ego_go k * period k.
 
 (* The hardest braking that a follower of the ego must expect of it. *)
 Definition hardest k := Rmax (ego_braking k) (follower_braking k).
 
-(* Ranges, A1 to A4 and A8. That [unheld] is at least 0.01 m/s and not only positive is assumed here. *)
+(* Ranges, A1 to A4 and A8. *)
 Record valid (k : contract) : Prop := {
   period_pos : 0 < period k;
   latency_nonneg : 0 <= latency k;
@@ -64,5 +65,5 @@ Record valid (k : contract) : Prop := {
   A4_acceleration : ego_acceleration k <= other_acceleration k;
   A4_braking : ego_acceleration k <= hardest k;
   A4_speed : ego_max_speed k <= other_max_speed k;
-  unheld_enough : 5368709 / 536870912 <= unheld k
+  unheld_enough : 1 / 100 <= unheld k
 }.

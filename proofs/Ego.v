@@ -1,4 +1,4 @@
-(* (i) The ego under a plan: its commands, when they take effect, and where they bring it. *)
+(* (i) The ego under a plan: its commands, when they take effect, and how fast it is where go is reduced. *)
 Require Import Reals Lra Lia Psatz List.
 Require Import Contract Shipped Motion Reach Statement.
 Open Scope R_scope.
@@ -40,11 +40,32 @@ Proof. reflexivity. Qed.
 Lemma earliest_rest_is k w : earliest_rest k w = rest_of (start w) (other_braking k).
 Proof. reflexivity. Qed.
 
-Lemma unlimited_is k : unlimited k = Rmax (unheld k) (5368709 / 536870912).
+Lemma unlimited_is k : unlimited k = unheld k.
 Proof. reflexivity. Qed.
 
-Lemma unlimited_unheld k : valid k -> unlimited k = unheld k.
-Proof. intros ok. rewrite unlimited_is. apply Rmax_left, (unheld_enough k ok). Qed.
+(** * A reduced go *)
+
+Lemma below_quotient x y d : 0 < d -> x * d <= y -> x <= y / d.
+Proof. intros. apply Rmult_le_reg_r with d; [lra |]. field_simplify; lra. Qed.
+
+(* An ego that may not go as planned is fast: even if it brakes until its command takes effect it stays above [unheld]. *)
+Definition fast k v := unheld k + ego_braking k * switching k <= v.
+
+(* L31: an ego that is not may go. *)
+Lemma may_go k v sensed in_effect :
+  valid k -> sensed <= v + speed_error k -> in_effect <= ego_acceleration k ->
+  ego_go k <= most_command k sensed in_effect \/ fast k v.
+Proof.
+  intros ok se ie. unfold fast.
+  destruct (Rle_dec (unheld k + ego_braking k * switching k) v) as [f | slow]; [right; exact f | left].
+  destruct ok. unfold most_command, unheld in *.
+  assert (sw : 0 <= switching k) by (unfold switching; lra).
+  assert (E : Rmax 0 in_effect <= ego_acceleration k) by (cases; lra).
+  assert (Rmax 0 in_effect * switching k <= ego_acceleration k * switching k) by (apply Rmult_le_compat_r; lra).
+  assert (ego_go k * switching k <= ego_acceleration k * switching k) by (apply Rmult_le_compat_r; lra).
+  apply Rmin_glb; [| lra]. apply Rle_trans with (2 := Rmax_r _ _).
+  apply Rmin_glb; apply below_quotient; lra.
+Qed.
 
 (** * Which command is in effect *)
 
@@ -123,22 +144,100 @@ Proof.
   apply at_most_join with (tau (S j) + latency k); auto; [apply first | apply second]; lra.
 Qed.
 
+(* Command j is a or more; or it is reduced, and given to an ego that is fast. *)
+Definition enough (a : R) (j : nat) := a <= c j \/ 0 <= c j /\ exists i, j = S i /\ fast k (v (tau j)).
+
+(* One that is fast loses little until its command takes effect. *)
+Lemma fast_at_first i t :
+  0 <= c (S i) -> fast k (v (tau (S i))) -> tau (S i) <= t <= tau (S i) + latency k -> unheld k <= v t.
+Proof.
+  intros c0 f [lo hi]. unfold fast in f. pose proof (commanded k v tau c obey i) as cm.
+  pose proof (switches_down k v tau c obey i (tau (S i)) t ltac:(lra) ltac:(lra) ltac:(lra)) as U.
+  destruct ok.
+  assert (ego_braking k * (t - tau (S i)) <= ego_braking k * switching k).
+  { apply Rmult_le_compat_l; [lra | unfold switching; lra]. }
+  assert (- ego_braking k * (t - tau (S i)) <= Rmin (c i) (c (S i)) * (t - tau (S i))).
+  { apply Rmult_le_compat_r; [lra | apply Rmin_glb; lra]. }
+  assert (0 <= ego_braking k * switching k) by (apply Rmult_le_pos; [| unfold switching]; lra).
+  set (change := Rmin (c i) (c (S i)) * (t - tau (S i))) in *. revert U. cases; lra.
+Qed.
+
+(* Who does not brake stays as fast as it is. *)
+Lemma stays_fast a t1 t2 t :
+  0 <= a -> speeds_up_at_least v a (unheld k) t1 t2 -> unheld k <= v t1 -> t1 <= t <= t2 -> unheld k <= v t.
+Proof.
+  intros a0 up f [lo hi]. pose proof (up t1 t ltac:(lra) ltac:(lra) ltac:(lra)) as U.
+  assert (0 <= a * (t - t1)) by (apply Rmult_le_pos; lra). revert U. cases; lra.
+Qed.
+
+Lemma fast_until_next i t :
+  0 <= c (S i) -> fast k (v (tau (S i))) -> tau (S i) <= t <= tau (S (S i)) -> unheld k <= v t.
+Proof.
+  intros c0 f [lo hi]. destruct (Rle_dec t (tau (S i) + latency k)) as [first | second].
+  - apply fast_at_first with i; auto.
+  - apply (stays_fast (c (S i)) (tau (S i) + latency k) (tau (S (S i)))); [exact c0 | | | lra].
+    + apply (stays_down k v tau c obey i).
+    + apply fast_at_first with i; auto. destruct ok. lra.
+Qed.
+
+(* One that is fast may do without accelerating. *)
+Lemma at_least_fast a b t1 t2 :
+  0 <= b -> speeds_up_at_least v b (unheld k) t1 t2 -> (forall t, t1 <= t <= t2 -> unheld k <= v t) ->
+  speeds_up_at_least v a (unheld k) t1 t2.
+Proof.
+  intros b0 up f t t' ? ? ?. pose proof (up t t' ltac:(lra) ltac:(lra) ltac:(lra)) as U. pose proof (f t ltac:(lra)).
+  assert (0 <= b * (t' - t)) by (apply Rmult_le_pos; lra).
+  apply Rle_trans with (1 := Rmin_r _ _). revert U. cases; lra.
+Qed.
+
+Lemma switches_enough i a :
+  enough a i -> enough a (S i) -> speeds_up_at_least v a (unheld k) (tau (S i)) (tau (S i) + latency k).
+Proof.
+  intros old new. pose proof (switches_down k v tau c obey i) as down.
+  assert (lat : 0 <= latency k) by (destruct ok; lra).
+  destruct new as [new | [new0 (i' & e & f)]].
+  - destruct old as [old | [old0 (i' & -> & f)]].
+    + apply at_least_weaken with (Rmin (c i) (c (S i))); [apply Rmin_glb; lra | exact down].
+    + destruct (Rle_dec 0 (c (S (S i')))) as [new0 | brakes].
+      * apply at_least_fast with (Rmin (c (S i')) (c (S (S i')))); [apply Rmin_glb; lra | exact down |].
+        intros t [? ?]. apply (stays_fast (Rmin (c (S i')) (c (S (S i')))) (tau (S (S i'))) (tau (S (S i')) + latency k));
+          [apply Rmin_glb; lra | exact down | | lra].
+        apply fast_until_next with i'; auto. pose proof (latency_fits (S i')). lra.
+      * apply at_least_weaken with (Rmin (c (S i')) (c (S (S i')))); [apply Rmin_glb; lra | exact down].
+  - injection e as <-.
+    assert (F : forall t, tau (S i) <= t <= tau (S i) + latency k -> unheld k <= v t).
+    { intros t h. apply fast_at_first with i; auto. }
+    assert (never : 0 <= c i -> speeds_up_at_least v a (unheld k) (tau (S i)) (tau (S i) + latency k)).
+    { intros old0. apply at_least_fast with (Rmin (c i) (c (S i))); [apply Rmin_glb; lra | exact down | exact F]. }
+    destruct old as [old | [old0 _]]; [| exact (never old0)].
+    destruct (Rle_dec 0 (c i)) as [old0 | brakes]; [exact (never old0) |].
+    apply at_least_weaken with (Rmin (c i) (c (S i))); [apply Rmin_glb; lra | exact down].
+Qed.
+
+Lemma stays_enough i a :
+  enough a (S i) -> speeds_up_at_least v a (unheld k) (tau (S i) + latency k) (tau (S (S i))).
+Proof.
+  intros [new | [new0 (i' & e & f)]]; pose proof (stays_down k v tau c obey i) as down.
+  - apply at_least_weaken with (c (S i)); assumption.
+  - injection e as <-. apply at_least_fast with (c (S i)); [exact new0 | exact down |].
+    intros t [? ?]. apply fast_until_next with i; auto. destruct ok. lra.
+Qed.
+
 Lemma one_period_down j a t1 t2 :
-  tau (S j) <= t1 -> t2 <= tau (S (S j)) -> (forall q, (j <= q <= S j)%nat -> in_effect t1 t2 q -> a <= c q) ->
+  tau (S j) <= t1 -> t2 <= tau (S (S j)) -> (forall q, (j <= q <= S j)%nat -> in_effect t1 t2 q -> enough a q) ->
   speeds_up_at_least v a (unheld k) t1 t2.
 Proof.
   intros lo hi above.
   destruct (Rle_dec t2 t1); [apply at_least_point; lra |].
-  pose proof (latency_fits j). pose proof (latency_fits (S j)). destruct ok.
-  assert (a <= c (S j)) by (apply above; [lia | split; lra]).
+  pose proof (latency_fits j). pose proof (latency_fits (S j)).
+  assert (0 <= latency k) by (destruct ok; lra).
+  assert (new : enough a (S j)) by (apply above; [lia | split; lra]).
   assert (second : forall t, tau (S j) + latency k <= t -> speeds_up_at_least v a (unheld k) t t2).
-  { intros. apply at_least_weaken with (c (S j)); [assumption |].
-    apply at_least_within with (3 := stays_down k v tau c obey j); lra. }
+  { intros. apply at_least_within with (3 := stays_enough j a new); lra. }
   destruct (Rle_dec (tau (S j) + latency k) t1); [auto |].
-  assert (a <= c j) by (apply above; [lia | split; lra]).
+  assert (old : enough a j) by (apply above; [lia | split; lra]).
   assert (first : forall t, t <= tau (S j) + latency k -> speeds_up_at_least v a (unheld k) t1 t).
-  { intros. apply at_least_weaken with (Rmin (c j) (c (S j))); [cases; lra |].
-    apply at_least_within with (3 := switches_down k v tau c obey j); lra. }
+  { intros. apply at_least_within with (3 := switches_enough j a old new); lra. }
   destruct (Rle_dec t2 (tau (S j) + latency k)); [auto |].
   apply at_least_join with (tau (S j) + latency k); auto; [apply first | apply second]; lra.
 Qed.
@@ -164,7 +263,7 @@ Qed.
 
 Lemma commands_down i m a t1 t2 :
   tau (S i) <= t1 -> t2 <= tau (S i + m)%nat ->
-  (forall j, (i <= j < S i + m)%nat -> in_effect t1 t2 j -> a <= c j) -> speeds_up_at_least v a (unheld k) t1 t2.
+  (forall j, (i <= j < S i + m)%nat -> in_effect t1 t2 j -> enough a j) -> speeds_up_at_least v a (unheld k) t1 t2.
 Proof.
   revert t2. induction m as [| m IH]; intros t2 lo hi above.
   { rewrite Nat.add_0_r in hi. apply at_least_point. lra. }
@@ -186,7 +285,7 @@ Lemma ego_brakes_at_most i m t t' :
 Proof.
   intros lo le hi.
   assert (H : speeds_up_at_least v (- ego_braking k) (unheld k) t t').
-  { apply commands_down with i m; auto. intros j _ _. apply (commanded k v tau c obey). }
+  { apply commands_down with i m; auto. intros j _ _. left. apply (commanded k v tau c obey). }
   specialize (H t t' ltac:(lra) le ltac:(lra)).
   assert (0 <= ego_braking k * (t' - t)) by (destruct ok; apply Rmult_le_pos; lra).
   revert H. cases; lra.
@@ -222,6 +321,20 @@ Proof. unfold switching, shortest_period. destruct ok. lra. Qed.
 (* From a call on, the plan of a log is followed. *)
 Variables (l : log).
 
+Hypothesis knows : forall i,
+  own_v (ego_at l (S i)) <= v (tau (S i)) + speed_error k /\ previous_most l (S i) <= ego_acceleration k.
+
+(* An ego that goes is as fast as if its go were not reduced. *)
+Lemma going_is_enough a i : a <= ego_go k -> goes_on k l c (S i) -> enough a (S i).
+Proof.
+  intros ag [lo _]. destruct (knows i) as [se ie]. set (x := own_v _) in *. set (y := previous_most _ _) in *.
+  assert (m0 : 0 <= Rmin (ego_go k) (most_command k x y)).
+  { apply Rmin_glb; [destruct ok; lra |]. unfold most_command. apply Rmin_glb; [apply Rmax_l | destruct ok; lra]. }
+  destruct (may_go k (v (tau (S i))) x y ok se ie) as [may | f].
+  - left. rewrite Rmin_left in lo by exact may. lra.
+  - right. split; [lra | exists i; auto].
+Qed.
+
 Lemma plan_is_followed i m :
   previous_least l (S i) <= c i <= previous_most l (S i) ->
   (forall j, (S i <= j < S i + m)%nat -> carries_on k l c j) ->
@@ -238,10 +351,9 @@ Proof.
     specialize (IH ltac:(lia)). pose proof (carried (S i + q)%nat ltac:(lia)) as C. unfold carries_on in C.
     replace (S i + S q)%nat with (S (S i + q)) by lia.
     rewrite IH in C. destruct (n - q)%nat as [| r] eqn:e; lia. }
-  assert (go : forall q, (q < m)%nat -> (q < n)%nat -> c (S (S i) + q)%nat = ego_go k).
+  assert (go : forall q, (q < m)%nat -> (q < n)%nat -> goes_on k l c (S (S i + q))).
   { intros q hm hn. pose proof (carried (S i + q)%nat ltac:(lia)) as C. unfold carries_on in C.
-    rewrite (left q ltac:(lia)) in C. destruct (n - q)%nat as [| r] eqn:e; [lia |].
-    replace (S (S i) + q)%nat with (S (S i + q)) by lia. apply C. }
+    rewrite (left q ltac:(lia)) in C. destruct (n - q)%nat as [| r] eqn:e; [lia | apply C]. }
   assert (brake : forall q, (q < m)%nat -> (n <= q)%nat -> c (S (S i) + q)%nat = - ego_braking k).
   { intros q hm hn. pose proof (carried (S i + q)%nat ltac:(lia)) as C. unfold carries_on in C.
     rewrite (left q ltac:(lia)) in C. replace (n - q)%nat with O in C by lia.
@@ -276,6 +388,7 @@ Proof.
     intros j hj [e1 e2]; destruct (which j hj) as [-> | [-> | (q & hq & ->)]];
     fold T in e1, e2.
   all: try (destruct n; cases; lra).
+  all: try (left; cases; lra).
   all: pose proof (T1 q) as Q1; pose proof (T2 q) as Q2; pose proof (go_pos q) as Q3.
   all: destruct (le_lt_dec n q) as [h | h];
     [ pose proof (brake q hq h) as C; pose proof (later n q h) as L
@@ -283,5 +396,7 @@ Proof.
   all: destruct (Nat.eq_dec q 0) as [-> | h1]; [simpl INR in * | pose proof (many q ltac:(lia)) as M].
   all: try (exfalso; lra).
   all: try (rewrite C; destruct n; cases; lra || lia).
+  all: try (apply going_is_enough; [cases; lra | exact C]).
+  all: destruct C as [_ C]; apply Rle_trans with (1 := C); destruct n; cases; lra || lia.
 Qed.
 End Commands.

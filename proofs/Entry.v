@@ -186,7 +186,7 @@ Proof.
     rewrite stop by lra. lra. }
   pose proof (way_grows (ego_acceleration k) B f ah cap (ego_max_speed k) (R (x + rho)) ve V (clears - x)) as G.
   assert (unheld k <= ego_max_speed k).
-  { unfold unheld. assert (0 <= ego_acceleration k * switching k).
+  { unfold unheld. assert (0 <= (ego_acceleration k + ego_braking k) * switching k).
     { unfold switching. apply Rmult_le_pos; lra. }
     assert (0 <= ego_go k * period k) by (apply Rmult_le_pos; lra). lra. }
   assert (E : R (clears + rho) = rushing (R (x + rho)) ah cap (clears - x)).

@@ -3,25 +3,8 @@ Require Import Reals Lra Psatz.
 Require Import Contract Shipped Motion Reach.
 Open Scope R_scope.
 
-Lemma below_quotient x y d : 0 < d -> x * d <= y -> x <= y / d.
-Proof. intros. apply Rmult_le_reg_r with d; [lra |]. field_simplify; lra. Qed.
-
 Lemma quotient_below x y d : 0 < d -> x <= y / d -> x * d <= y.
 Proof. intros d0 le. apply (Rmult_le_compat_r d) in le; [| lra]. replace (y / d * d) with y in le by (field; lra). exact le. Qed.
-
-(* L31: an ego that is no faster than [unheld] when it is commanded may go. *)
-Lemma may_go k v sensed in_effect :
-  valid k -> v <= unheld k -> sensed <= v + speed_error k -> in_effect <= ego_acceleration k ->
-  ego_go k <= most_command k sensed in_effect.
-Proof.
-  intros ok vu se ie. destruct ok. unfold most_command, unheld in *.
-  assert (sw : 0 <= switching k) by (unfold switching; lra).
-  assert (E : Rmax 0 in_effect <= ego_acceleration k) by (cases; lra).
-  assert (Rmax 0 in_effect * switching k <= ego_acceleration k * switching k) by (apply Rmult_le_compat_r; lra).
-  assert (ego_go k * switching k <= ego_acceleration k * switching k) by (apply Rmult_le_compat_r; lra).
-  apply Rmin_glb; [| lra]. apply Rle_trans with (2 := Rmax_r _ _).
-  apply Rmin_glb; apply below_quotient; lra.
-Qed.
 
 (* L28: whenever a command takes effect, the ego gets no faster than its limit, or than it is with what is in effect
    already. *)
@@ -73,10 +56,11 @@ Proof.
     unfold room in *. lra.
 Qed.
 
-(* What L31 does not say: an ego that brakes when go is commanded, at a speed above [unheld], may be below [unheld] when the
-   reduced go takes effect. Then it accelerates less than go, though it is slow. Theorem 1 assumes that it does not: [obeys]. *)
-Lemma reduced_go_may_be_slow : exists k sensed,
-  valid k /\ most_command k sensed (- ego_braking k) < ego_go k /\ sensed - ego_braking k * latency k < unheld k.
+(* Why [unheld] is lower by what the ego loses by braking until its command takes effect: were it not, an ego that brakes when
+   go is commanded could be below it when the reduced go takes effect, and accelerate less than go, though it is slow. *)
+Lemma braking_first_matters : exists k sensed,
+  valid k /\ most_command k sensed (- ego_braking k) < ego_go k /\
+  sensed - ego_braking k * latency k < unheld k + ego_braking k * switching k.
 Proof.
   pose (k := {| period := 1; latency := 1; jitter := 0; position_error := 0; speed_error := 0; slack := 1 / 100;
     ego_max_speed := 15; ego_acceleration := 3; ego_go := 3; ego_braking := 3;
@@ -88,66 +72,4 @@ Proof.
     apply Rle_lt_trans with (1 := Rmin_l _ _). apply Rmax_lub_lt; [lra |].
     apply Rle_lt_trans with (1 := Rmin_r _ _). lra.
   - unfold unheld, switching, k. cbn. lra.
-Qed.
-
-Lemma at_least_lower_cap v a cap cap' t1 t2 :
-  cap' <= cap -> speeds_up_at_least v a cap t1 t2 -> speeds_up_at_least v a cap' t1 t2.
-Proof.
-  intros le up t t' ? ? ?. apply Rle_trans with (2 := up t t' ltac:(lra) ltac:(lra) ltac:(lra)).
-  apply Rle_min_compat_l, Rle_max_compat_r, le.
-Qed.
-
-(* What would do: were the speed from which on the ego may be held lower by what it can lose by braking until a command takes
-   effect, every ego with a limiter at [held] and go reduced by [most_command] would be as fast as [obeys] demands. *)
-Lemma reduced_go_is_fast_enough k v tau previous sensed in_effect held t2 :
-  valid k -> (forall t, 0 <= v t) -> - ego_braking k <= previous -> sensed <= v tau + speed_error k ->
-  in_effect <= ego_acceleration k -> unheld k <= held ->
-  let command := Rmin (ego_go k) (most_command k sensed in_effect) in
-  speeds_up_at_least v (Rmin previous command) held tau (tau + latency k) ->
-  speeds_up_at_least v command held (tau + latency k) t2 ->
-  let cap := unheld k - ego_braking k * latency k in
-  speeds_up_at_least v (Rmin previous (ego_go k)) cap tau (tau + latency k) /\
-  speeds_up_at_least v (ego_go k) cap (tau + latency k) t2.
-Proof.
-  intros ok pos pb se ie hl. cbn zeta. intros up1 up2.
-  assert (bl : 0 <= ego_braking k * latency k) by (destruct ok; apply Rmult_le_pos; lra).
-  assert (lat : 0 <= latency k) by (destruct ok; lra).
-  destruct (Rle_dec (ego_go k) (most_command k sensed in_effect)) as [full | reduced].
-  { rewrite (Rmin_left (ego_go k)) in up1, up2 by lra. split; apply at_least_lower_cap with held; auto; lra. }
-  rewrite (Rmin_right (ego_go k)) in up1, up2 by lra.
-  set (c := most_command k sensed in_effect) in *.
-  assert (c0 : 0 <= c).
-  { unfold c, most_command. apply Rmin_glb; [apply Rmax_l | destruct ok; lra]. }
-  assert (fast : unheld k < v tau).
-  { destruct (Rlt_le_dec (unheld k) (v tau)) as [? | slow]; [assumption | exfalso].
-    apply reduced. apply may_go with (v tau); auto. }
-  (* Until the command takes effect it brakes at b at most. *)
-  assert (first : forall t, tau <= t <= tau + latency k -> unheld k - ego_braking k * latency k <= v t).
-  { intros t [? ?]. pose proof (up1 tau t ltac:(lra) ltac:(lra) ltac:(lra)) as U.
-    assert (M : - ego_braking k * (t - tau) <= Rmin previous c * (t - tau)).
-    { apply Rmult_le_compat_r; [lra | apply Rmin_glb; destruct ok; lra]. }
-    assert (ego_braking k * (t - tau) <= ego_braking k * latency k) by (apply Rmult_le_compat_l; destruct ok; lra).
-    apply Rle_trans with (2 := U). apply Rmin_glb; [lra |].
-    apply Rle_trans with (2 := Rmax_r _ _). lra. }
-  assert (second : forall t, tau + latency k <= t <= t2 -> unheld k - ego_braking k * latency k <= v t).
-  { intros t [? ?]. pose proof (up2 (tau + latency k) t ltac:(lra) ltac:(lra) ltac:(lra)) as U.
-    pose proof (first (tau + latency k) ltac:(lra)).
-    assert (0 <= c * (t - (tau + latency k))) by (apply Rmult_le_pos; lra).
-    apply Rle_trans with (2 := U). apply Rmin_glb; [lra |]. apply Rle_trans with (2 := Rmax_r _ _). lra. }
-  split.
-  - intros t t' ? ? ?. pose proof (up1 t t' ltac:(lra) ltac:(lra) ltac:(lra)) as U.
-    pose proof (first t ltac:(lra)).
-    rewrite (Rmax_right (unheld k - ego_braking k * latency k)) by lra.
-    destruct (Rle_dec previous c) as [lower | higher].
-    + rewrite (Rmin_left previous c) in U by lra. rewrite (Rmin_left previous (ego_go k)) by lra.
-      apply Rle_trans with (2 := U). apply Rle_min_compat_l, Rmax_r.
-    + rewrite (Rmin_right previous c) in U by lra. apply Rle_trans with (1 := Rmin_r _ _).
-      assert (0 <= c * (t' - t)) by (apply Rmult_le_pos; lra).
-      apply Rle_trans with (2 := U). apply Rmin_glb; [lra | apply Rmax_r].
-  - intros t t' ? ? ?. pose proof (up2 t t' ltac:(lra) ltac:(lra) ltac:(lra)) as U.
-    pose proof (second t ltac:(lra)).
-    rewrite (Rmax_right (unheld k - ego_braking k * latency k)) by lra.
-    apply Rle_trans with (1 := Rmin_r _ _).
-    assert (0 <= c * (t' - t)) by (apply Rmult_le_pos; lra).
-    apply Rle_trans with (2 := U). apply Rmin_glb; [lra | apply Rmax_r].
 Qed.

@@ -84,7 +84,7 @@ Lemma carried i : (1 <= i)%nat -> carries_on k the_log c i.
 Proof.
   intros h. unfold carries_on. cbn [goes the_log]. destruct (3 - i)%nat as [| n] eqn:e.
   - split; [rewrite c_brakes by lia; reflexivity | lia].
-  - split; [rewrite c_goes by lia; reflexivity | lia].
+  - split; [unfold goes_on; rewrite c_goes by lia; split; [apply Rmin_l | apply Rle_refl] | lia].
 Qed.
 
 (* The plan goes for two more periods: by then the ego is certainly across, and the other has not arrived. *)
@@ -94,7 +94,7 @@ Proof.
   assert (s1 : s 1 = 0) by apply (RInt_point 1 v).
   assert (v1 : v 1 = 0) by (rewrite v_goes; lra).
   assert (cap : unlimited k = 9).
-  { unfold unlimited, k, round, switching. cbn. evaluate. lra. }
+  { unfold unlimited, k, round, switching. cbn. lra. }
   assert (L : least (departs_at k the_log c 1) = {| distance := 1 / 2; speed := 1 |}).
   { unfold departs_at. rewrite departure_is. cbn zeta. cbn [least]. rewrite cap.
     unfold the_log, at_least, start, shortest_period, switching, k, round, c. cbn. rewrite v1. evaluate. f_equal; lra. }
@@ -132,7 +132,9 @@ Proof.
     split; [exact ego_moves |].
     split; [exists 0; intros i; cbn; lra |].
     split; [exact ego_obeys |].
-    split; [intros i; unfold own_holds; cbn -[INR c Nat.sub]; replace (S i - 1)%nat with i by lia; lra |].
+    split.
+    { intros i. pose proof (commanded _ _ _ _ ego_obeys i) as [_ C]. revert C. unfold own_holds. cbn -[INR c Nat.sub].
+      replace (S i - 1)%nat with i by lia. lra. }
     split.
     + intros o ->. constructor.
       * apply (rest_moves 0).

@@ -110,7 +110,7 @@ Let q2 := at_least q1 a (unheld k) (sp - sw).
 Let q3 := at_least q2 (Rmin a (ego_go k)) (unheld k) sw.
 
 Lemma least_is : least d = q3.
-Proof. unfold d. rewrite departure_is. cbn zeta. rewrite unlimited_unheld by assumption. reflexivity. Qed.
+Proof. unfold d. rewrite departure_is. cbn zeta. reflexivity. Qed.
 
 (* One speed can become the other in a time, for all that the ego can do: it grows at most at a_max, and not beyond the speed
    from which on the ego may be held. *)
@@ -198,7 +198,7 @@ Lemma plan_clears target :
   forall u, T <= u <= E -> u <= T + clears -> grows (v u) V (T + clears - u).
 Proof.
   intros vT pla aa it. cbn zeta. revert it. unfold in_time. rewrite least_is, clearing_is. cbn [fst snd].
-  fold sp sw. rewrite unlimited_unheld by assumption.
+  fold sp sw. rewrite unlimited_is.
   destruct sw_sp as (sw0 & swsp & spp). pose proof go_time as n0.
   assert (gg : ego_go k <= ego_acceleration k) by (destruct ok; lra).
   assert (g0 : 0 < ego_go k) by (destruct ok; lra).

@@ -30,7 +30,7 @@ Proof. intros h. apply (known_holds k t w (tau since)); auto. Qed.
 
 Lemma truth i : (1 <= i)%nat ->
   own_holds k (ego_at l i) (s (tau i)) (v (tau i)) /\
-  exists j, i = S j /\ previous_least l i <= c j <= previous_most l i.
+  exists j, i = S j /\ previous_least l i <= c j <= previous_most l i /\ previous_most l i <= ego_acceleration k.
 Proof.
   intros h. destruct i as [| j]; [lia |]. destruct (true j) as [A B]. split; [exact A | exists j; auto].
 Qed.
@@ -71,10 +71,11 @@ Let n := goes l i0.
 
 Lemma followed : plan_followed k v T E (previous_least l i0) (previous_most l i0) (c i0) n.
 Proof.
-  destruct (truth i0 ltac:(lia)) as (_ & j & -> & P).
+  destruct (truth i0 ltac:(lia)) as (_ & j & -> & P & _).
   unfold T, E. replace (S i) with (S (S j) + (i - S j))%nat by lia.
-  apply plan_is_followed; auto; [apply (forwards s v ego_moves) |].
-  intros q h. apply carried. lia.
+  apply plan_is_followed; auto; [apply (forwards s v ego_moves) | |].
+  - intros q. destruct (true q) as ((_ & [sensed_ _] & _) & _ & most_). lra.
+  - intros q h. apply carried. lia.
 Qed.
 
 Lemma where_ : own_holds k o (s T) (v T).

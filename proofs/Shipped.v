@@ -34,7 +34,7 @@ Definition until (from : reach) (target acceleration cap : R) : R * R :=
   (Rmax (x4 - speed from) 0 / acceleration + Rmax (x1 - x3) 0 / x2, x4).
 
 Definition unlimited (k : contract) : R :=
-  Rmax (ego_max_speed k - speed_error k - speed_error k - ego_acceleration k * switching k - ego_go k * period k) (5368709 / 536870912).
+  ego_max_speed k - speed_error k - speed_error k - (ego_acceleration k + ego_braking k) * switching k - ego_go k * period k.
 
 Definition departure (k : contract) (sensed previous_least previous_most command : R) : departs :=
   let x0 := Rmax (sensed + speed_error k) 0 in
@@ -46,7 +46,7 @@ Definition departure (k : contract) (sensed previous_least previous_most command
   let x6 := Rmax (x4 + command * switching k) 0 in
   let x7 := Rmax (x4 + Rmax command (ego_go k) * switching k) 0 in
   let x8 := Rmax (sensed - speed_error k) 0 in
-  let x9 := Rmax (ego_max_speed k - speed_error k - speed_error k - ego_acceleration k * switching k - ego_go k * period k) (5368709 / 536870912) in
+  let x9 := ego_max_speed k - speed_error k - speed_error k - (ego_acceleration k + ego_braking k) * switching k - ego_go k * period k in
   let x10 := Rmin (x8 + Rmin previous_least command * switching k) (Rmax x9 x8) in
   let x11 := Rmax x10 0 in
   let x12 := Rmin (x11 + x3) (Rmax x9 x11) in
@@ -59,7 +59,7 @@ Definition departure (k : contract) (sensed previous_least previous_most command
 Definition clearing (k : contract) (from : reach) (target : R) : R * R :=
   let x0 := ego_go k + ego_go k in
   let x1 := Rmax (target - distance from) 0 in
-  let x2 := Rmax (Rmax (ego_max_speed k - speed_error k - speed_error k - ego_acceleration k * switching k - ego_go k * period k) (5368709 / 536870912)) (speed from) in
+  let x2 := Rmax (ego_max_speed k - speed_error k - speed_error k - (ego_acceleration k + ego_braking k) * switching k - ego_go k * period k) (speed from) in
   let x3 := (x2 - speed from) * (x2 + speed from) / x0 in
   let x4 := sqrt (speed from * speed from + x0 * Rmin x1 x3) in
   (Rmax (x4 - speed from) 0 / ego_go k + Rmax (x1 - x3) 0 / x2 + shortest_period k + switching k, x4).

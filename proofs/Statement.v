@@ -31,8 +31,8 @@ Definition on_grid (k : contract) (tau : nat -> R) :=
     start + INR i * period k - jitter k <= tau i <= start + INR i * period k + jitter k.
 
 (* C4, C5: command c (S i) is given at call S i; until it takes effect, within the latency, the acceleration is anything
-   from the command before it to this one. A limiter, and the reduction of go near the speed limit (D11), may hold the
-   ego at a speed of [unheld] or more (L31). Command c 0 is the one before the first call. *)
+   from the command before it to this one. A limiter may hold the ego at a speed of [unheld] or more. Command c 0 is the
+   one before the first call. *)
 Record obeys (k : contract) (v : R -> R) (tau c : nat -> R) : Prop := {
   commanded : forall i, - ego_braking k <= c i <= ego_acceleration k;
   switches_up : forall i,
@@ -158,21 +158,25 @@ Record log := {
   goes : nat -> nat
 }.
 
-(* What is logged is true, at every call S i. At a call that sees nothing anything true may stand there: nothing is verified
-   then. *)
+(* What is logged is true, at every call S i, and nothing harder than a_max is taken to be in effect. At a call that sees
+   nothing anything true may stand there: nothing is verified then. *)
 Definition true_log (k : contract) (l : log) (s v : R -> R) (tau c : nat -> R) :=
   forall i, own_holds k (ego_at l (S i)) (s (tau (S i))) (v (tau (S i))) /\
-    previous_least l (S i) <= c i <= previous_most l (S i).
+    previous_least l (S i) <= c i <= previous_most l (S i) /\ previous_most l (S i) <= ego_acceleration k.
 
 (* D14 at call i. *)
 Definition departs_at (k : contract) (l : log) (c : nat -> R) (i : nat) : departs :=
   departure k (own_v (ego_at l i)) (previous_least l i) (previous_most l i) (c i).
 
+(* D11: at call i the ego goes as hard as its speed limit lets it, or harder if it does not see its own speed. *)
+Definition goes_on (k : contract) (l : log) (c : nat -> R) (i : nat) :=
+  Rmin (ego_go k) (most_command k (own_v (ego_at l i)) (previous_most l i)) <= c i <= ego_go k.
+
 (* At call S i the plan in force at call i is carried on: its next command is given, and it is one command shorter. *)
 Definition carries_on (k : contract) (l : log) (c : nat -> R) (i : nat) :=
   match goes l i with
   | O => c (S i) = - ego_braking k /\ goes l (S i) = O
-  | S n => c (S i) = ego_go k /\ goes l (S i) = n
+  | S n => goes_on k l c (S i) /\ goes l (S i) = n
   end.
 
 (* Something was checked of the plan in force at call i: at a call from first up to i, since which it is carried on. *)

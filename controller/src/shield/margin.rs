@@ -19,14 +19,14 @@ pub struct Departure<R> {
 }
 
 /// The speed (m/s) up to which the ego certainly goes as hard as it plans: neither its limiter, which errs by the
-/// speed error at most, nor [`super::choice::most`] holds it back.
+/// speed error at most, nor [`super::choice::most`] holds it back. `go` may be reduced while the ego is faster, and it
+/// may then brake until the command takes effect. A contract demands that this is at least 0.01 m/s.
 pub fn unlimited<R: Real>(contract: &Contract) -> R {
     let error = R::of(contract.speed_error);
-    let late = R::of(contract.ego.acceleration) * R::of(contract.switching());
+    let switched = R::of(contract.ego.acceleration) + R::of(contract.ego.braking);
+    let late = switched * R::of(contract.switching());
     let gain = R::of(contract.ego.go) * R::of(contract.period);
-    let speed = R::of(contract.ego.max_speed) - error - error - late - gain;
-    // A contract whose error exceeds its speed limit says nothing about how fast the ego gets.
-    speed.max(R::of(0.01))
+    R::of(contract.ego.max_speed) - error - error - late - gain
 }
 
 /// Bounds on the ego after `command` (m/s²) for one period, given now at `speed` (m/s, as sensed) while

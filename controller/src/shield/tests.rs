@@ -298,6 +298,23 @@ fn no_command_makes_the_ego_faster_than_its_limit() {
 }
 
 #[test]
+fn an_ego_is_fast_when_a_reduced_go_takes_effect() {
+    for (period, latency) in [(0.1, 0.1), (1.0, 0.5), (1.0, 1.0)] {
+        let contract = WORST.to_builder().period(period).latency(latency);
+        let contract = contract.build().unwrap();
+        let ego = contract.ego;
+        for speed in (0..=150).map(|i| 0.1 * i as f32) {
+            let brakes = most(&contract, speed, -ego.braking);
+            let then = speed - ego.braking * latency;
+            assert!(
+                brakes >= ego.go || then >= margin::unlimited::<f32>(&contract),
+                "{speed} m/s, {latency} s: {brakes} m/s² at {then} m/s"
+            );
+        }
+    }
+}
+
+#[test]
 fn what_the_ego_gets_through_at_least_knows_of_its_limit() {
     let least = |limit| {
         let mut contract = WORST;

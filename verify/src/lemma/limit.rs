@@ -26,15 +26,15 @@ pub(super) fn unlimited_lemmas() -> Vec<Lemma> {
     vec![Lemma::new(
         [
             "unlimited",
-            "up to the speed `unlimited` an ego that goes may go: `choice::most` is `go` or more",
-            "what is in effect is no harder than may be commanded; speeds err",
+            "up to the speed `unlimited`, once its command is in effect, an ego that goes may go: `choice::most` is `go` or more",
+            "until the command takes effect the ego brakes at b or less; what is in effect is no harder than may be commanded; speeds err",
         ],
         &unlimited(margin::unlimited),
         (
-            "the command before forgotten",
+            "the braking until the command takes effect forgotten",
             &unlimited(|contract| {
-                let late = Term::of(contract.ego().acceleration) * Term::of(contract.switching());
-                margin::unlimited::<Term>(contract) + late
+                let lost = Term::of(contract.ego().braking) * Term::of(contract.switching());
+                margin::unlimited::<Term>(contract) + lost
             }),
         ),
     )]
@@ -76,11 +76,16 @@ fn limit(rule: fn(&Contract, Term, Term) -> Term) -> Claim {
 
 fn unlimited(rule: fn(&Contract) -> Term) -> Claim {
     let contract = any_contract();
-    let (now, sensed, bound) = (speed("v"), speed("sensed"), acceleration("previous_most"));
+    let (now, sensed) = (speed("v"), speed("sensed"));
+    let (late, before) = (seconds("late"), acceleration("previous"));
+    let bound = acceleration("previous_most");
     Claim::new(
         [
             number(0.01).at_most(reach::limiter(&contract)),
-            now.at_most(rule(&contract)),
+            not_negative([now, late]),
+            late.at_most(Term::of(contract.switching())),
+            (-Term::of(contract.ego().braking)).at_most(before),
+            after(now, before, late).at_most(rule(&contract)),
             sensed.at_most(now + Term::of(contract.speed_error())),
             bound.at_most(Term::of(contract.ego().acceleration)),
         ],

@@ -91,7 +91,8 @@ pub(super) fn lemmas() -> Vec<Lemma> {
                 "by `clearing` the slowest ego has gone the target, and is at least as fast as it says",
                 "it goes from `least` on, with a limiter",
             ],
-            &clears(margin::clearing),
+            // Of the limiter's speed the solver need not know what it is made of.
+            &clears(margin::clearing).whatever(vec![limiter(&any_contract())]),
             (
                 "the errors of speed with the wrong sign",
                 &clears(|contract, least, target| {
@@ -262,7 +263,7 @@ pub(super) fn first(contract: &Contract) -> Term {
 }
 
 /// The speed from which on it may do without accelerating: `unlimited` says that its commands go below that, and its
-/// limiter only holds it above.
+/// limiter only holds it above. It loses some by braking after a command that is reduced.
 pub(super) fn limiter(contract: &Contract) -> Term {
     let ego = contract.ego();
     let [error, period, late] = [
@@ -271,8 +272,9 @@ pub(super) fn limiter(contract: &Contract) -> Term {
         contract.switching(),
     ]
     .map(Term::of);
-    let [most, acceleration, go] = [ego.max_speed, ego.acceleration, ego.go].map(Term::of);
-    most - error - error - acceleration * late - go * period
+    let [most, go] = [ego.max_speed, ego.go].map(Term::of);
+    let [acceleration, braking] = [ego.acceleration, ego.braking].map(Term::of);
+    most - error - error - (acceleration + braking) * late - go * period
 }
 
 fn rest(rule: impl Fn(&Contract, Reach<Term>, Term) -> Term) -> Claim {

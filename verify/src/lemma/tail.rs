@@ -17,7 +17,7 @@ pub(super) fn lemmas() -> Vec<Lemma> {
                 "`clearing` is no later than the slowest ego: what is left of it suffices an ego that is no nearer and no slower",
                 "it goes, with a limiter, and has gone the target at some time",
             ],
-            &clearing(margin::clearing),
+            &clearing(margin::clearing).whatever(vec![super::reach::limiter(&any_contract())]),
             (
                 "a cap that the limiter may exceed",
                 &clearing(|contract, least, target| {

@@ -107,7 +107,8 @@ prop_compose! {
         let go = (go * launch).max(0.01);
         let latency = times[0] * times[1];
         // What keeps the ego below its limit has to leave it some speed.
-        let limit = speeds[0] + 2.0 * errors[1] + launch * latency + go * times[0];
+        let late = (launch + b * accelerations[2]) * latency;
+        let limit = speeds[0] + 2.0 * errors[1] + late + go * times[0];
         Contract::builder()
             .period(times[0])
             .latency(latency)

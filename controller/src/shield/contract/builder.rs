@@ -66,7 +66,7 @@ impl ContractBuilder {
         self
     }
 
-    /// [`Ego::max_speed`] in m/s, in (0, the others' `max_speed`].
+    /// [`Ego::max_speed`] in m/s, above what may hold the ego back and up to the others' `max_speed`.
     pub const fn ego_max_speed(mut self, ego_max_speed: f32) -> Self {
         self.numbers.ego.max_speed = ego_max_speed;
         self

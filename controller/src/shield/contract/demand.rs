@@ -117,7 +117,7 @@ const fn everywhere(contract: &Contract) -> [Demand; 16] {
     let late = ": a command takes effect before the next one is given, each up to two jitters early or late";
     // Whoever enters a lane ahead of another may do so sooner, and then slower, than planned.
     let keeps = ": it accelerates no harder than other.acceleration, and no harder than it or its follower brakes";
-    let fastest = ": it is no faster than the others, and faster than what it gains before its limit holds it";
+    let fastest = ": it is no faster than the others, and goes as planned at 0.01 m/s at least, in spite of its limit";
     let commanded = ": it goes no harder than ego.acceleration, the hardest that is commanded";
     // The gap to a leader is smallest at the end only if the leader can brake harder.
     let leader = ": it brakes no harder than other.braking, the hardest braking of a vehicle ahead";
@@ -161,7 +161,7 @@ const fn everywhere(contract: &Contract) -> [Demand; 16] {
         (
             "ego.max_speed",
             ego.max_speed,
-            above(held(contract), other.max_speed),
+            from(held(contract) + 0.01, other.max_speed),
             fastest,
         ),
     ]
@@ -195,10 +195,11 @@ const fn of_turns(contract: &Contract, rule: Precedence) -> [Demand; 2] {
     ]
 }
 
-/// How far (m/s) below its limit the ego may be held back.
+/// How far (m/s) below its limit the ego may be held back: what [`unlimited`](crate::shield::margin::unlimited) leaves.
 const fn held(contract: &Contract) -> f32 {
     let ego = contract.ego;
-    2.0 * contract.speed_error + ego.acceleration * contract.switching() + ego.go * contract.period
+    let late = (ego.acceleration + ego.braking) * contract.switching();
+    2.0 * contract.speed_error + late + ego.go * contract.period
 }
 
 /// One that goes is seen: it gets faster, in spite of its limit, than one that may be taken for one at rest.
@@ -215,4 +216,33 @@ const fn unseen(contract: &Contract) -> Option<ContractError> {
         range: above(rest + held, contract.other.max_speed),
         why: ": who takes turns must be seen to go, in spite of speed_error",
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shield::margin::unlimited;
+
+    /// Up to this speed (m/s) the slowest ego goes that the changed worst case allows.
+    fn goes_up_to(change: impl FnOnce(&mut Contract)) -> f32 {
+        let mut contract = Contract::WORST_CASE;
+        change(&mut contract);
+        contract.ego.max_speed = held(&contract) + 0.01;
+        assert_eq!(first_fault(&contract), None);
+        unlimited(&contract)
+    }
+
+    #[test]
+    fn every_contract_lets_the_ego_go_at_a_centimetre_a_second() {
+        let slowest = [
+            goes_up_to(|_| {}),
+            goes_up_to(|c| c.speed_error = 0.3),
+            goes_up_to(|c| c.ego.braking = 7.0),
+            goes_up_to(|c| (c.latency, c.jitter) = (0.03, 0.01)),
+            goes_up_to(|c| (c.period, c.latency) = (1.0, 1.0)),
+        ];
+        for speed in slowest {
+            assert!((speed - 0.01).abs() < 1e-5, "{speed} m/s");
+        }
+    }
 }

@@ -58,8 +58,10 @@ pub struct Contract {
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Ego {
-    /// No command accelerates the ego beyond this speed, in m/s, in (0, the others' `max_speed`]; one that is given
-    /// while the ego's own state is missing may, by what is then not known of its speed.
+    /// No command accelerates the ego beyond this speed, in m/s, up to the others' `max_speed`; one that is given
+    /// while the ego's own state is missing may, by what is then not known of its speed. At least 0.01 m/s more than
+    /// 2 `speed_error` + (`acceleration` + `braking`) (`latency` + 4 `jitter`) + `go` `period`: up to so far below it
+    /// the ego may be held back.
     /// A limiter may keep the vehicle from going faster, and errs by `speed_error` at most. The guarantee holds with
     /// a limiter and without one.
     pub max_speed: f32,
@@ -338,7 +340,7 @@ mod tests {
         );
         begins(
             worst(|c| c.ego.max_speed = 16.0),
-            "ego.max_speed = 16 is outside (0.6",
+            "ego.max_speed = 16 is outside [0.9",
         );
         begins(
             worst(|c| c.ego.braking = 9.0),
@@ -384,7 +386,7 @@ mod tests {
         );
         begins(
             stop(|contract, _| contract.speed_error = 6.0),
-            "ego.max_speed = 15 is outside (24.675, 15]: ",
+            "ego.max_speed = 15 is outside (24.975, 15]: ",
         );
     }
 }
