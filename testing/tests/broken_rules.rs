@@ -9,7 +9,7 @@ use cede_testing::{Report, Suite};
 fn report<R: Rules + Clone + 'static>(id: &str) -> Report {
     let policy = Policy::new(cede_controller::policy::embedded::words()).unwrap();
     Suite::new(policy, Contract::WORST_CASE)
-        .cases(2400)
+        .cases(4800)
         .only(id)
         .with_rules::<R>()
         .run()
