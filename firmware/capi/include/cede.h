@@ -31,7 +31,7 @@
 /**
  * Words of eight bytes of a cede_approach.
  */
-#define CEDE_APPROACH_WORDS 240
+#define CEDE_APPROACH_WORDS 328
 
 /**
  * Braking in m/s^2 that is commanded when the approach cannot be used: nothing is known of its contract then.
@@ -324,6 +324,7 @@ enum cede_contract_field
     CEDE_CONTRACT_FIELD_PRECEDENCE_DISTANCE = 16,
     CEDE_CONTRACT_FIELD_PRECEDENCE_BRAKING = 17,
     CEDE_CONTRACT_FIELD_PRECEDENCE_PATIENCE = 18,
+    CEDE_CONTRACT_FIELD_EGO_EMERGENCY = 19,
     CEDE_CONTRACT_FIELD_OTHER = 255,
 };
 #ifndef __cplusplus
@@ -1105,9 +1106,13 @@ typedef struct cede_contract {
      */
     float ego_go;
     /**
-     * Braking that the ego achieves, and the hardest that is commanded, in m/s^2, in (0, other_braking].
+     * Braking that the ego achieves, in m/s^2, in (0, other_braking]; the hardest that is commanded while there is a plan.
      */
     float ego_braking;
+    /**
+     * Braking that is commanded while no plan is safe, in m/s^2, in [ego_braking, other_braking]; 0: ego_braking.
+     */
+    float ego_emergency;
     /**
      * Highest speed of another in m/s, in (0, 100].
      */

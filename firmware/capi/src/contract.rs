@@ -256,6 +256,7 @@ fn field(name: &str) -> cede_contract_field {
         "precedence.distance" => Field::PrecedenceDistance,
         "precedence.braking" => Field::PrecedenceBraking,
         "precedence.patience" => Field::PrecedencePatience,
+        "ego.emergency" => Field::EgoEmergency,
         _ => Field::Other,
     }
 }
