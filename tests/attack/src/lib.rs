@@ -14,8 +14,9 @@
 //!   needs its zone;
 //! - decisions and plans, which adversaries look at.
 //!
-//! Who touches whom, who is ahead in a lane, by which gap, and what a follower owes (C6) is measured on the attacker's own
-//! polylines and rectangles ([`shared`]).
+//! Who touches whom, who is ahead in a lane, and by which gap, is measured on the attacker's own polylines and rectangles
+//! ([`shared`]). What a follower owes (C6) is measured there, too, and beside that in what the junction publishes as lanes:
+//! they begin somewhat sooner, and the contract speaks of them.
 //!
 //! | | |
 //! |---|---|

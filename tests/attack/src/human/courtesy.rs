@@ -1,7 +1,8 @@
 //! What the contract expects of others: C6 in lanes and C7 where a rule of precedence holds.
 //!
-//! Who is behind whom in a lane, and by which gap, is measured where the vehicles are ([`Shared`]). C7 is about the
-//! zones of the junction: there the controller's zones and lines are what everybody keeps to.
+//! Who is behind whom in a lane, and by which gap, is measured where the vehicles are ([`Shared`]), and read from the lanes
+//! that the junction publishes, which is where the contract has C6: a human keeps both. C7 is about the zones of the
+//! junction: there the controller's zones and lines are what everybody keeps to.
 
 use crate::motion::{State, TICK};
 use crate::numbers::{Numbers, Rule};
@@ -11,7 +12,7 @@ use crate::site::Area;
 /// What one human owes one shielded vehicle, and what it remembers for that.
 #[derive(Clone, Debug, Default)]
 pub struct Duty {
-    /// In each lane: what is owed to an ego that is ahead.
+    /// In each lane, as it is measured and as the junction has it: what is owed to an ego that is ahead.
     distances: Vec<Distance>,
     /// When the ego arrived at its line at the earliest, in s.
     ego_arrived: Option<f64>,
@@ -37,39 +38,59 @@ const CALM: u32 = 10;
 const NEARER: f64 = 3.0;
 
 impl Distance {
-    /// Whether `me` has to brake in the tick that begins, in which it wants to accelerate by `wanted`.
+    /// Whether `me` has to brake in the tick that begins, in which it wants to accelerate by `wanted`; `gap` (m) is how far
+    /// it is behind the ego, or for how many ticks it will not be.
     fn must_brake(
         &mut self,
         numbers: &Numbers,
         (ego, me): (State, State),
-        shared: &Shared,
+        gap: Result<f64, u32>,
         wanted: f64,
     ) -> bool {
-        let relation = shared.relation(ego.s, me.s, EARLY + NEARER);
-        let behind = relation.filter(|relation| relation.behind);
-        let entered = ego.s >= shared.span()[0] - EARLY;
-        let Some(relation) = behind.filter(|_| entered) else {
-            *self = Self {
-                calm: if behind.is_none() { CALM } else { 0 },
-                ..Self::default()
-            };
-            return false;
+        let gap = match gap {
+            Ok(gap) => gap,
+            Err(calm) => {
+                *self = Self {
+                    calm,
+                    ..Self::default()
+                };
+                return false;
+            }
         };
-        self.owed |= relation.gap >= numbers.safe_gap(me.v, ego.v);
+        self.owed |= gap >= numbers.safe_gap(me.v, ego.v);
         // One tick early, because a tick is the shortest time in which it can react.
         let next = me.after(wanted, TICK, numbers.other.speed);
         let needs = numbers.safe_gap(next.v, ego.v) + next.s - me.s;
-        if self.owed && relation.gap <= needs {
+        if self.owed && gap <= needs {
             self.unsafe_for += TICK;
         } else {
             self.unsafe_for = 0.0;
-            self.calm = if relation.gap > needs + NEARER {
-                CALM
-            } else {
-                0
-            };
+            self.calm = if gap > needs + NEARER { CALM } else { 0 };
         }
         self.unsafe_for > numbers.reaction - TICK
+    }
+}
+
+/// How far (m) `me` is behind the ego where their lanes are one, by the attacker's own geometry; if it is not, for how many
+/// ticks it will not be.
+fn measured(shared: &Shared, ego: State, me: State) -> Result<f64, u32> {
+    let relation = shared.relation(ego.s, me.s, EARLY + NEARER).ok_or(CALM)?;
+    let entered = ego.s >= shared.span()[0] - EARLY;
+    let behind = relation.behind && entered;
+    if behind { Ok(relation.gap) } else { Err(0) }
+}
+
+/// The same in what the junction calls a lane, where the contract has it: a lane begins where the footprints may touch
+/// within the tolerance, and there one may come to be beside the ego without touching it.
+fn published(area: &Area, ego: State, me: State) -> Result<f64, u32> {
+    let lead = ego.s - me.s;
+    let there = ego.s >= area.ego[0] && ego.s <= area.ego[1] && me.s <= area.other[1];
+    let ahead = lead >= 0.5 * (area.lead[0] + area.lead[1]);
+    let behind = area.lane && there && ahead;
+    if behind {
+        Ok(lead - area.lead[1])
+    } else {
+        Err(0)
     }
 }
 
@@ -114,13 +135,18 @@ impl Duty {
 
     /// C6: it stops behind an ego that is ahead in its lane. A gap that is not safe is reacted to after the reaction time.
     fn keep_distance(&mut self, numbers: &Numbers, meeting: &Meeting<'_>, wanted: f64) -> f64 {
-        self.distances
-            .resize(meeting.shared.len(), Distance::default());
+        let (ego, me) = (meeting.ego, meeting.me);
+        let measured = meeting.shared.iter().map(|it| measured(it, ego, me));
+        let published = meeting.areas.iter().map(|it| published(it, ego, me));
+        self.distances.resize(
+            meeting.shared.len() + meeting.areas.len(),
+            Distance::default(),
+        );
         let mut limit = wanted;
-        for (shared, distance) in meeting.shared.iter().zip(&mut self.distances) {
+        for (gap, distance) in measured.chain(published).zip(&mut self.distances) {
             if distance.calm > 0 {
                 distance.calm -= 1;
-            } else if distance.must_brake(numbers, (meeting.ego, meeting.me), shared, wanted) {
+            } else if distance.must_brake(numbers, (ego, me), gap, wanted) {
                 limit = limit.min(-numbers.follower_braking);
             }
         }
