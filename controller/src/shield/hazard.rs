@@ -331,7 +331,9 @@ pub(super) fn granted(
         distance: other.bounds.s.to,
         speed: other.bounds.speed.to,
     };
-    settled && zone.other.from >= farthest.rest(rule.braking)
+    // Who stands at the very edge of its zone may take itself for one that is in it; one that is shielded rests a whole
+    // slack before it.
+    settled && zone.other.from - 0.5 * contract.slack >= farthest.rest(rule.braking)
 }
 
 /// Notes for each lane that the ego shares with `other` whether it is ahead there, and the other keeps its distance

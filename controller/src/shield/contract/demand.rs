@@ -237,7 +237,7 @@ mod tests {
         let slowest = [
             goes_up_to(|_| {}),
             goes_up_to(|c| c.speed_error = 0.3),
-            goes_up_to(|c| c.ego.braking = 7.0),
+            goes_up_to(|c| (c.ego.braking, c.ego.emergency) = (7.0, 7.0)),
             goes_up_to(|c| (c.latency, c.jitter) = (0.03, 0.01)),
             goes_up_to(|c| (c.period, c.latency) = (1.0, 1.0)),
         ];
