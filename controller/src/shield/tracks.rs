@@ -386,11 +386,12 @@ fn newcomer<R: Rules>(
         settled,
         ..Other::at(number, path, 0.0, base, at)
     };
-    Some(
-        hazard::of::<R>(contract, conflict, ego, &other)
-            .map(|(_, hazard)| hazard)
-            .collect(),
-    )
+    let mut hazards = Vec::new();
+    for (_, hazard) in hazard::of::<R>(contract, conflict, ego, &other) {
+        // Two paths have no more zones than that. `collect` would panic if they had.
+        let _ = hazards.push(hazard);
+    }
+    Some(hazards)
 }
 
 impl Other {
