@@ -16,8 +16,8 @@ capi=firmware/capi
 capi_library=$PWD/$capi/target/release/libcede.a
 examples=firmware/examples/c
 target=thumbv7em-none-eabihf
-max_flash=106496 # with the texts of the examples
-max_ecu=98304    # without
+max_flash=114688 # with the texts of the examples
+max_ecu=106496   # without
 max_ram=16384
 max_instructions=100000
 
