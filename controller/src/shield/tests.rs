@@ -9,8 +9,8 @@ use proptest::prelude::*;
 use std::string::ToString;
 
 mod door;
+mod edges;
 mod memory;
-mod review;
 
 const WORST: Contract = Contract::WORST_CASE;
 

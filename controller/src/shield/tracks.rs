@@ -257,7 +257,7 @@ impl<const N: usize> Tracks<N> {
         }
     }
 
-    /// Closes the zones of somebody of whom nobody knows where it is.
+    /// Closes the zones of a track whose place is unknown.
     fn close_unplaced(&mut self, way: Way<'_>, ego: &Own, (track, path): (&Track, PathId)) {
         if let Some(from) = unplaced(way, path, track.class, ego.least) {
             self.unwatched

@@ -1,4 +1,4 @@
-//! Findings of a hostile review: each was a failing test.
+//! Corners of the memory: vehicles without room, numbers that are used again, refused states, the end of time.
 
 use super::*;
 
