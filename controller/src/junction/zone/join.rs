@@ -70,14 +70,15 @@ impl Patch {
     /// Whether they share a way in it, and do not just cross at a small angle: up to 30° they touch over a length and twice
     /// both widths. A way that begins or ends with a route is shared on beyond it.
     fn is_shared(&self, ego: Footprint, other: Footprint) -> bool {
-        let cut = self.starts || self.ends;
-        let crossed = |length: f32| length + 2.0 * (ego.width + other.width);
-        let longer = |span: Span, length: f32| {
-            let touched = if cut { 0.0 } else { crossed(length) };
-            span.to - span.from >= touched + ALONG * length
+        let Some([a, b]) = self.parallel else {
+            return false;
         };
-        self.parallel
-            .is_some_and(|[a, b]| longer(a, ego.length) && longer(b, other.length))
+        let [a, b] = [a.to - a.from, b.to - b.from];
+        let long = a >= ALONG * ego.length && b >= ALONG * other.length;
+        let lengths = ego.length + other.length;
+        // Of both together: in a bend, one turns while the other goes straight, and touches over less.
+        let crossed = lengths + 4.0 * (ego.width + other.width);
+        long && (self.starts || self.ends || a + b >= crossed + ALONG * lengths)
     }
 
     /// The zone of two vehicles.
