@@ -2,6 +2,7 @@
 //! rapier2d judges every step, those of the broken shields as well.
 
 use cede_controller::dangerous::{Rules, Sound, unchecked};
+use cede_controller::shield::actuation::Inherited;
 use cede_controller::shield::margin::{self, Departure};
 use cede_controller::shield::reach::Reach;
 use cede_controller::{Bounds, Contract, Plan, Zone};
@@ -160,16 +161,16 @@ mutant! { a_stale_plan_is_caught, StalePlan,
     }
 }
 mutant! { a_dropped_latency_is_caught, NoLatency,
-    fn departure(contract: &Contract, speed: f32, previous: [f32; 2], command: f32) -> Departure<f32> {
+    fn departure(contract: &Contract, speed: f32, inherited: &Inherited<f32>, command: f32) -> Departure<f32> {
         let prompt = unchecked(contract.to_builder().latency(0.0));
-        margin::departure(&prompt, speed, previous, command)
+        margin::departure(&prompt, speed, inherited, command)
     }
 }
 mutant! { a_stop_without_the_first_period_is_caught, StopsNow,
-    fn departure(contract: &Contract, speed: f32, previous: [f32; 2], command: f32) -> Departure<f32> {
+    fn departure(contract: &Contract, speed: f32, inherited: &Inherited<f32>, command: f32) -> Departure<f32> {
         Departure {
             braking: Reach::start(speed),
-            ..margin::departure(contract, speed, previous, command)
+            ..margin::departure(contract, speed, inherited, command)
         }
     }
 }

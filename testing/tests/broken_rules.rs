@@ -1,6 +1,7 @@
 //! A shield in which a single rule is broken is caught, whichever rule it is.
 
 use cede_controller::dangerous::Rules;
+use cede_controller::shield::actuation::Inherited;
 use cede_controller::shield::{Bounds, margin, reach::Reach};
 use cede_controller::{Contract, Plan, Policy, Zone};
 use cede_testing::{Report, Suite};
@@ -128,14 +129,14 @@ broken!(
         fn departure(
             contract: &Contract,
             speed: f32,
-            previous: [f32; 2],
+            inherited: &Inherited<f32>,
             command: f32,
         ) -> margin::Departure<f32> {
             let eager = contract.to_builder().latency(0.0).build();
             margin::departure(
                 &eager.unwrap_or(*contract),
                 speed,
-                [previous[0].min(command); 2],
+                &Inherited::all(contract, [inherited.bounds()[0].min(command); 2]),
                 command,
             )
         }

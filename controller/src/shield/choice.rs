@@ -17,13 +17,23 @@ pub fn grid<R: Real>(ego: &Ego, i: u8) -> R {
 /// (m/s²) still acts: the ego does not become faster than `ego.max_speed`, and if it is already, no faster than it is.
 pub fn most<R: Real>(contract: &Contract, speed: R, in_effect: R) -> R {
     let ego = contract.ego();
-    let (period, late) = (R::of(contract.period()), R::of(contract.switching()));
+    let (period, late) = (R::of(contract.period()), R::of(contract.response()));
     let zero = R::of(0.0);
     let room = R::of(ego.max_speed) - speed - R::of(contract.speed_error());
     let after = (room - zero.max(in_effect) * late) / period;
     let throughout = room / (period + late);
-    // In this order, what is not a number becomes 0.
-    zero.max(after.min(throughout)).min(R::of(ego.acceleration))
+    let room = after.min(throughout);
+    if contract.is_exact() {
+        // In this order, what is not a number becomes 0.
+        return zero.max(room).min(R::of(ego.acceleration));
+    }
+    let (gain, disturbance) = (R::of(ego.gain), R::of(ego.disturbance));
+    let (in_part, in_excess) = (R::of(1.0) - gain, R::of(1.0) + gain);
+    let left = room - disturbance;
+    // Braking may be achieved in part, and acceleration in excess.
+    let commanded = (left / in_part).min(left / in_excess);
+    let hold = -(disturbance / in_part);
+    hold.max(commanded).min(R::of(ego.acceleration))
 }
 
 /// What may be commanded of `acceleration` (m/s²) if `most` (m/s²) is the hardest; braking, if it is not a number.

@@ -3,63 +3,121 @@
 //! Each is a composition of +, −, ×, ÷, √, min and max, generic over [`Real`]: what is proved over
 //! intervals is what the vehicle executes in `f32`.
 
+use super::actuation::{Inherited, hold, strongest, weakest};
 use super::contract::Contract;
 use super::reach::Reach;
 use crate::real::Real;
 
-/// Bounds on the ego until the first command of a plan is certainly in effect.
+/// Bounds on the ego until the first command of a plan is certainly followed: the *response*, after the first period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Departure<R> {
-    /// At most this far and fast when braking is certainly in effect, if the plan brakes at once.
+    /// At most this far and fast when braking is certainly followed, if the plan brakes at once.
     pub braking: Reach<R>,
-    /// At most this far and fast one period and the latency from now, if the plan goes.
+    /// At most this far and fast one period and the response from now, if the plan goes.
     pub most: Reach<R>,
-    /// At least this far and fast one period and the latency from now, if the plan goes.
+    /// At least this far and fast one period and the response from now, if the plan goes. A speed below 0 is the time,
+    /// times `go`, for which the ego may still stand.
     pub least: Reach<R>,
 }
 
 /// The speed (m/s) up to which the ego certainly goes as hard as it plans: neither its limiter, which errs by the
 /// speed error at most, nor [`super::choice::most`] holds it back. `go` may be reduced while the ego is faster, and it
-/// may then brake until the command takes effect. A contract demands that this is at least 0.01 m/s.
+/// may then brake until the command is followed. A contract demands that this is at least 0.01 m/s.
 pub fn unlimited<R: Real>(contract: &Contract) -> R {
+    let ego = &contract.ego;
     let error = R::of(contract.speed_error);
-    let switched = R::of(contract.ego.acceleration) + R::of(contract.ego.braking);
-    let late = switched * R::of(contract.switching());
-    let gain = R::of(contract.ego.go) * R::of(contract.period);
-    R::of(contract.ego.max_speed) - error - error - late - gain
+    let switched =
+        strongest(contract, R::of(ego.acceleration)) + strongest(contract, R::of(ego.emergency));
+    let late = switched * R::of(contract.response());
+    let gain = strongest(contract, R::of(ego.go)) * R::of(contract.period);
+    let limit = R::of(ego.max_speed) - error - error - late - gain;
+    if contract.is_exact() {
+        return limit;
+    }
+    limit - fade::<R>(contract) * R::of(contract.period)
 }
 
-/// Bounds on the ego after `command` (m/s²) for one period, given now at `speed` (m/s, as sensed) while
-/// one between the two `previous` (m/s²) is still in effect for at most the latency.
+/// By how much (m/s²) a reduced `go` may slow the ego: it holds the speed against what nobody commands, or gives way to it.
+fn fade<R: Real>(contract: &Contract) -> R {
+    let ego = &contract.ego;
+    let disturbance = R::of(ego.disturbance);
+    (disturbance + disturbance) / (R::of(1.0) - R::of(ego.gain))
+}
+
+/// Bounds on the ego after `command` (m/s²) for one period, given now at `speed` (m/s, as sensed) while what is `inherited`
+/// still acts.
 pub fn departure<R: Real>(
     contract: &Contract,
     speed: R,
-    [previous_least, previous_most]: [R; 2],
+    inherited: &Inherited<R>,
     command: R,
 ) -> Departure<R> {
     let error = R::of(contract.speed_error);
-    let latency = R::of(contract.switching());
-    let rest = R::of(contract.shortest_period()) - latency;
     let (go, cap) = (R::of(contract.ego.go), unlimited(contract));
-    let most = Reach::start(speed + error)
-        .at_most(previous_most.max(command), latency)
-        .at_most(command, rest);
-    let least = Reach::start(speed - error)
-        .at_least(previous_least.min(command), cap, latency)
-        .at_least(command, cap, rest);
+    let (strong, weak) = (strongest(contract, command), weakest(contract, command));
+    let (strong_go, weak_go) = (strongest(contract, go), weakest(contract, go));
+    let [below, _] = inherited.bounds();
+    let floor = hold(contract, below.min(weak));
+    let slower = |from: Reach<R>, low, time| {
+        let from = if contract.is_exact() {
+            from
+        } else {
+            from.fading(cap, fade::<R>(contract) * time)
+        };
+        from.sinking(low, cap, time, floor)
+    };
+    let mut braking = Reach::start(speed + error);
+    let mut most = braking;
+    let mut least = Reach::start(speed - error);
+    let mut rest = R::of(contract.shortest_period());
+    for part in inherited.parts() {
+        let time = R::of(part.time);
+        rest = rest - time;
+        let [low, high] = part.bounds;
+        let (high, low) = (high.max(strong), low.min(weak));
+        braking = braking.at_most(high, time);
+        let (high, low) = if part.later {
+            (high.max(strong_go), low.min(weak_go))
+        } else {
+            (high, low)
+        };
+        most = most.at_most(high, time);
+        least = slower(least, low, time);
+    }
+    let mut late = R::of(contract.response());
+    if contract.responds_late() {
+        late = R::of(contract.shortest_period());
+    } else {
+        braking = braking.at_most(strong, rest);
+        most = most.at_most(strong, rest);
+        least = slower(least, weak, rest);
+    }
     Departure {
-        braking: most.at_most(command, latency),
-        most: most.at_most(command.max(go), latency),
-        least: least.at_least(command.min(go), cap, latency),
+        braking: braking.at_most(strong, late),
+        most: most.at_most(strong.max(strong_go), late),
+        least: slower(least, weak.min(weak_go), late),
     }
 }
 
 /// The time (s) from now at which the ego has certainly gone `target` metres, if it goes from
 /// `least` on, and the least speed (m/s) that it then has.
 pub fn clearing<R: Real>(contract: &Contract, least: Reach<R>, target: R) -> (R, R) {
-    let (time, speed) = least.until(target, R::of(contract.ego.go), unlimited(contract));
+    let go = weakest(contract, R::of(contract.ego.go));
+    let cap = unlimited(contract);
+    let least = if contract.is_exact() {
+        least
+    } else {
+        // It is no slower than `cap` on the way, which therefore takes no longer.
+        let longest = (target - least.distance).max(R::of(0.0)) / cap;
+        least.fading(cap, fade::<R>(contract) * longest)
+    };
+    let (time, speed) = if contract.ego.lag == 0.0 {
+        least.until(target, go, cap)
+    } else {
+        least.until_from_rest(target, go, cap)
+    };
     (
-        time + R::of(contract.shortest_period()) + R::of(contract.switching()),
+        time + R::of(contract.shortest_period()) + R::of(contract.response()),
         speed,
     )
 }
@@ -78,10 +136,15 @@ pub fn periods(contract: &Contract, clears: f32) -> u16 {
     }
 }
 
+/// The braking (m/s²) that a plan certainly achieves.
+pub fn braking<R: Real>(contract: &Contract) -> R {
+    weakest(contract, R::of(contract.ego.braking))
+}
+
 /// The distance (m) from here at which the ego is at rest at the latest, if it goes for `time` more and then brakes.
 pub fn rest<R: Real>(contract: &Contract, most: Reach<R>, time: R) -> R {
-    most.at_most(R::of(contract.ego.go), time)
-        .rest(R::of(contract.ego.braking))
+    let go = strongest(contract, R::of(contract.ego.go));
+    most.at_most(go, time).rest(braking(contract))
 }
 
 /// Metres to spare if the ego is at rest after at most `rest` metres and must not go beyond `limit`.
@@ -115,7 +178,8 @@ pub fn safe_gap<R: Real>(contract: &Contract, speed: R, ego_speed: R) -> R {
     let follower = contract.follower;
     let stopped = rush(contract, speed, R::of(follower.reaction)).rest(R::of(follower.braking));
     // The gap is smallest at the end only if the one ahead brakes at least as hard.
-    let ahead = R::of(contract.ego.braking).max(R::of(follower.braking));
+    let hardest = strongest(contract, R::of(contract.ego.braking));
+    let ahead = hardest.max(R::of(follower.braking));
     (stopped - Reach::start(ego_speed).rest(ahead)).max(R::of(0.0))
 }
 

@@ -1,5 +1,6 @@
 //! What the shield remembers of the ego from one decision to the next: its plan, its commands, where it was.
 
+use super::actuation::{Commands, Inherited, anything};
 use super::contract::Contract;
 use super::margin;
 use super::own::Own;
@@ -8,7 +9,6 @@ use super::reach::Reach;
 use crate::instant::{Instant, micros};
 use crate::junction::zone::FAR;
 use crate::observation::Vehicle;
-use crate::real::Real;
 
 /// What is left of the plan that was verified last.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,13 +21,10 @@ struct Remembered {
 }
 
 /// The plan that was verified last, the commands given, and where the ego was.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Memory {
     remembered: Option<Remembered>,
-    /// The last command in m/s², and when it was given.
-    command: Option<(f32, Instant)>,
-    /// The accelerations (m/s²) that may still be in effect until the last command is: least and most. None: any.
-    before: Option<[f32; 2]>,
+    commands: Commands,
     last: Option<(Vehicle, Instant)>,
     /// Arc length (m), at least, of the ego when it was seen last.
     least: f32,
@@ -39,8 +36,7 @@ impl Memory {
     pub(crate) const fn new() -> Self {
         Self {
             remembered: None,
-            command: None,
-            before: None,
+            commands: Commands::unknown(),
             last: None,
             least: -FAR,
             blind: 0,
@@ -94,36 +90,23 @@ impl Memory {
         away <= (2 * micros(contract.jitter)).saturating_add(1 + u64::from(remembered.calls))
     }
 
-    /// The ego's acceleration until the command to be given at `now` takes effect: least and most.
-    pub(crate) fn in_effect(&self, contract: &Contract, now: Instant) -> [f32; 2] {
-        match self.command {
-            Some((command, given))
-                if now.since(given).saturating_add(1) >= micros(contract.latency) =>
-            {
-                [command; 2]
-            }
-            _ => self.possible(contract),
-        }
+    /// What acts on the ego until the command to be given at `now` is followed.
+    pub(crate) fn inherited(&self, contract: &Contract, now: Instant) -> Inherited<f32> {
+        self.commands.inherited(contract, now)
     }
 
     pub(crate) fn command(&mut self, contract: &Contract, acceleration: f32, now: Instant) {
-        self.before = self.command.map(|_| self.in_effect(contract, now));
-        self.command = Some((acceleration, now));
+        self.commands.give(contract, acceleration, now);
+    }
+
+    /// Nothing is known any more of what the commands lead to.
+    pub(crate) fn forget_commands(&mut self) {
+        self.commands = Commands::unknown();
     }
 
     /// What was known of the ego says nothing about the next observation.
     pub(crate) fn forget_ego(&mut self) {
         self.last = None;
-    }
-
-    /// The last command, or what was in effect before it.
-    fn possible(&self, contract: &Contract) -> [f32; 2] {
-        match (self.command, self.before) {
-            (Some((command, _)), Some([least, most])) => {
-                [Real::min(command, least), Real::max(command, most)]
-            }
-            _ => anything(contract),
-        }
     }
 
     /// Notes where the ego is at `now`; and whether its commands can have brought it there.
@@ -151,7 +134,7 @@ impl Memory {
     /// The ego's acceleration since it was seen last: least and most.
     fn accelerations(&self, contract: &Contract) -> [f32; 2] {
         if self.blind <= 1 {
-            self.possible(contract)
+            self.commands.since_last(contract)
         } else {
             anything(contract)
         }
@@ -169,9 +152,4 @@ impl Memory {
         (least.distance - distance..=most.distance + distance).contains(&way)
             && (least.speed - speed..=most.speed + speed).contains(&now.speed)
     }
-}
-
-/// Everything that can be commanded: least and most.
-const fn anything(contract: &Contract) -> [f32; 2] {
-    [-contract.ego.emergency, contract.ego.acceleration]
 }

@@ -5,6 +5,7 @@
 //! acceleration of a fixed grid is taken; otherwise the next command of the plan that was verified last;
 //! and if there is none, the ego brakes and says so. `docs/theorem.md` has the theorem.
 
+pub mod actuation;
 mod bounds;
 pub mod choice;
 mod clock;
@@ -36,6 +37,7 @@ use crate::instant::Instant;
 use crate::junction::zone::FAR;
 use crate::junction::{Junction, MAX_OTHERS, PathId, RightOfWay, Way};
 use crate::observation::{Observation, Vehicle};
+use actuation::Inherited;
 use choice::{allowed, most, nearest};
 use clock::{Clock, Tick};
 use core::marker::PhantomData;
@@ -159,8 +161,8 @@ impl core::error::Error for NotReady {}
 struct Scene<'s> {
     ego: &'s Own,
     hazards: &'s Hazards,
-    /// The accelerations that are in effect: least and most.
-    in_effect: [f32; 2],
+    /// What acts until the command is followed.
+    inherited: &'s Inherited<f32>,
     /// The hardest acceleration that may be commanded.
     most: f32,
 }
@@ -246,6 +248,9 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
             self.tracks.rebase::<R>(&self.contract, now);
         }
         self.memory.forget_ego();
+        if !contract.acts_as(&self.contract) {
+            self.memory.forget_commands();
+        }
         self.replaced |= !contract.keeps_plans_of(&self.contract);
         self.contract = contract;
         Ok(())
@@ -314,12 +319,12 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         let findings = next.look((now, Tick::First), &ego, observation);
         let mut hazards = Hazards::new();
         hazards.add::<N, R>(contract, self.way, (&ego, &next.tracks), findings.closed);
-        let in_effect = self.memory.in_effect(contract, now);
-        let most = most(contract, ego.speed, in_effect[1]);
+        let inherited = &self.memory.inherited(contract, now);
+        let most = most(contract, ego.speed, inherited.bounds()[1]);
         let scene = Scene {
             ego: &ego,
             hazards: &hazards,
-            in_effect,
+            inherited,
             most,
         };
         let braking = -contract.ego.braking;
@@ -364,7 +369,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         let scene = Scene {
             ego: &ego,
             hazards: &hazards,
-            in_effect: [previous; 2],
+            inherited: &Inherited::all(contract, [previous; 2]),
             most: most(contract, ego.speed, previous),
         };
         let acceleration = allowed(&contract.ego, scene.most, acceleration);
@@ -375,6 +380,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
     fn copy(&self) -> Self {
         Self {
             tracks: self.tracks.clone(),
+            memory: self.memory.clone(),
             rules: PhantomData,
             ..*self
         }
@@ -408,9 +414,9 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         if !on_time || self.replaced {
             self.void();
         }
-        let in_effect = self.memory.in_effect(&self.contract, now);
+        let [_, in_effect] = self.memory.inherited(&self.contract, now).bounds();
         let speed = self.memory.least_speed(&self.contract, now);
-        let acceleration = self.carry_on(most(&self.contract, speed, in_effect[1]));
+        let acceleration = self.carry_on(most(&self.contract, speed, in_effect));
         let plan = self.memory.plan();
         Decision {
             acceleration,
@@ -533,12 +539,12 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
             (ego, &self.tracks),
             findings.closed,
         );
-        let in_effect = self.memory.in_effect(&self.contract, now);
+        let inherited = &self.memory.inherited(&self.contract, now);
         let scene = Scene {
             ego,
             hazards: &hazards,
-            in_effect,
-            most: most(&self.contract, ego.speed, in_effect[1]),
+            inherited,
+            most: most(&self.contract, ego.speed, inherited.bounds()[1]),
         };
         self.verify_again(&scene, now, deviated || recheck);
         let breach = if deviated {
@@ -561,7 +567,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         };
         let contract = &self.contract;
         let command = allowed(&contract.ego, scene.most, next(contract, plan));
-        let departure = R::departure(contract, scene.ego.speed, scene.in_effect, command);
+        let departure = R::departure(contract, scene.ego.speed, scene.inherited, command);
         let holds =
             |hazard: &Hazard| R::keeps(spare::<R>(contract, hazard, &departure, R::tail(plan)));
         let watched = |hazard: &&Hazard| (all || hazard.suspect) && !hazard.is_closed();
@@ -698,7 +704,7 @@ fn settle<const N: usize, R: Rules>(
 impl Scene<'_> {
     /// The best plan after one period at `command`.
     fn check<R: Rules>(&self, contract: &Contract, command: f32) -> Verified {
-        let departure = R::departure(contract, self.ego.speed, self.in_effect, command);
+        let departure = R::departure(contract, self.ego.speed, self.inherited, command);
         best::<R>(contract, self.hazards, &departure)
     }
 
@@ -706,8 +712,8 @@ impl Scene<'_> {
     /// of the others may be in its own, and nobody stands in the way until the ego would be at rest again.
     fn leaves<R: Rules>(&self, contract: &Contract) -> bool {
         let go = allowed(&contract.ego, self.most, contract.ego.go);
-        let departure = R::departure(contract, self.ego.speed, self.in_effect, go);
-        let rest = departure.braking.rest(contract.ego.braking);
+        let departure = R::departure(contract, self.ego.speed, self.inherited, go);
+        let rest = departure.braking.rest(margin::braking(contract));
         let outside = |passage| match passage {
             Passage::Before { distance, .. } => distance > 0.0,
             // It comes from behind.
@@ -726,8 +732,8 @@ impl Scene<'_> {
 
     /// Why `command` is refused: what stands in the way of the plan that goes farthest.
     fn reason<R: Rules>(&self, contract: &Contract, command: f32) -> Reason {
-        let departure = R::departure(contract, self.ego.speed, self.in_effect, command);
-        let mut needs = departure.braking.rest(contract.ego.braking);
+        let departure = R::departure(contract, self.ego.speed, self.inherited, command);
+        let mut needs = departure.braking.rest(margin::braking(contract));
         let mut stop = Reason::Stop {
             other: 0,
             available: 0.0,

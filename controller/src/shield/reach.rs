@@ -10,7 +10,7 @@ use crate::real::Real;
 pub struct Reach<R> {
     /// Metres.
     pub distance: R,
-    /// Metres per second, not negative.
+    /// Metres per second; below 0 only in [`Reach::sinking`].
     pub speed: R,
 }
 
@@ -42,12 +42,26 @@ impl<R: Real> Reach<R> {
     /// Exact, but for a vehicle that reaches the cap or comes to rest on the way: that one gets no less far.
     #[must_use]
     pub fn at_least(self, acceleration: R, cap: R, time: R) -> Self {
+        self.sinking(acceleration, cap, time, R::of(0.0))
+    }
+
+    /// [`Reach::at_least`], but the speed counts down to `floor` ≤ 0 (m/s): from there it must come up to 0 before the
+    /// vehicle moves.
+    #[must_use]
+    pub fn sinking(self, acceleration: R, cap: R, time: R, floor: R) -> Self {
         let speed = (self.speed + acceleration * time).min(cap.max(self.speed));
         let step = (self.speed + speed) * time * R::of(0.5);
         Self {
             distance: self.distance + step.max(R::of(0.0)),
-            speed: speed.max(R::of(0.0)),
+            speed: speed.max(floor),
         }
+    }
+
+    /// As fast as that after it has lost `loss` (m/s), but not below `cap`.
+    #[must_use]
+    pub fn fading(self, cap: R, loss: R) -> Self {
+        let speed = self.speed.min(cap.max(self.speed - loss));
+        Self { speed, ..self }
     }
 
     /// After `time` more at `acceleration` > 0 up to the speed `cap`, which is then kept;
@@ -86,6 +100,19 @@ impl<R: Real> Reach<R> {
         let steady = (left - limit).max(R::of(0.0));
         let time = (speed - self.speed).max(R::of(0.0)) / acceleration + steady / cap;
         (time, speed)
+    }
+
+    /// [`Reach::until`] of a speed that may be below 0 ([`Reach::sinking`]): until it is 0, the vehicle stands.
+    #[must_use]
+    pub fn until_from_rest(self, target: R, acceleration: R, cap: R) -> (R, R) {
+        let zero = R::of(0.0);
+        let stands = zero.max(-self.speed) / acceleration;
+        let moving = Self {
+            speed: self.speed.max(zero),
+            ..self
+        };
+        let (time, speed) = moving.until(target, acceleration, cap);
+        (stands + time, speed)
     }
 }
 

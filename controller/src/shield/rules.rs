@@ -1,5 +1,6 @@
 //! The elementary rules of which the shield is composed.
 
+use super::actuation::Inherited;
 use super::bounds::Bounds;
 use super::contract::Contract;
 use super::margin::{self, Departure};
@@ -18,10 +19,10 @@ pub trait Rules {
     fn departure(
         contract: &Contract,
         speed: f32,
-        previous: [f32; 2],
+        inherited: &Inherited<f32>,
         command: f32,
     ) -> Departure<f32> {
-        margin::departure(contract, speed, previous, command)
+        margin::departure(contract, speed, inherited, command)
     }
 
     /// Where the ego is at rest if it goes for `time` after `from` and then brakes: [`margin::rest`].

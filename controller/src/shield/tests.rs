@@ -8,6 +8,7 @@ use crate::observation::Track;
 use proptest::prelude::*;
 use std::string::ToString;
 
+mod actuation;
 mod door;
 mod edges;
 mod memory;
@@ -319,7 +320,7 @@ fn what_the_ego_gets_through_at_least_knows_of_its_limit() {
     let least = |limit| {
         let mut contract = WORST;
         contract.ego.max_speed = limit;
-        margin::departure(&contract, 14.9, [3.0; 2], 3.0)
+        margin::departure(&contract, 14.9, &Inherited::all(&contract, [3.0; 2]), 3.0)
             .least
             .speed
     };
@@ -664,7 +665,7 @@ proptest! {
     ) {
         let zone = zone(&crossing(), 1);
         let goes = |s: f32, v: f32, t: f32, w: f32| {
-            let departure = margin::departure(&WORST, v, [0.0; 2], 3.0);
+            let departure = margin::departure(&WORST, v, &Inherited::all(&WORST, [0.0; 2]), 3.0);
             let (clears, _) = margin::clearing(&WORST, departure.least, zone.ego.to - s);
             let rush = margin::rush(&WORST, w, clears);
             s < zone.ego.to && t < zone.other.to

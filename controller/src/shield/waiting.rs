@@ -1,5 +1,6 @@
 //! Who has arrived, and who rests for how long, while two vehicles wait for each other.
 
+use super::actuation::{hold, strongest, weakest};
 use super::contract::{Contract, Precedence};
 use super::own::Own;
 use crate::instant::{Instant, micros};
@@ -51,12 +52,28 @@ fn calls_in_between(contract: &Contract) -> u8 {
 /// Periods from the end of one vehicle's turn to the beginning of the other's. One seen at rest until then
 /// has no plan left that counts on its turn and goes: it would be seen to move.
 pub(super) fn grace(contract: &Contract) -> u16 {
-    let gain = contract.ego.go * contract.period;
+    let go = weakest(contract, contract.ego.go);
+    let gain = go * contract.period;
     // Truncates towards zero and saturates.
     let hidden = ((contract.rest_speed() + 2.0 * contract.speed_error) / gain) as u16;
     // With jitter two shields may count a period more or less.
     let jitter = u16::from(contract.jitter > 0.0);
-    hidden.saturating_add(4).saturating_add(jitter)
+    hidden
+        .saturating_add(4)
+        .saturating_add(jitter)
+        .saturating_add(late(contract, go))
+}
+
+/// Periods, beyond the first one, until an ego that stands with its brakes applied certainly follows `go` (m/s²).
+fn late(contract: &Contract, go: f32) -> u16 {
+    let stands = -hold(contract, -strongest(contract, contract.ego.emergency)) / go;
+    let periods = (contract.response() + stands) / contract.period;
+    let whole = periods as u16;
+    if f32::from(whole) < periods {
+        whole
+    } else {
+        whole.saturating_sub(1)
+    }
 }
 
 /// When a vehicle arrived: between two moments, whatever its sensors' errors are.

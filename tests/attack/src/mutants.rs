@@ -3,6 +3,7 @@
 use crate::scenario::{FAMILIES, Family};
 use crate::tally::{Case, Tally};
 use cede_controller::dangerous::{Rules, Sound, unchecked};
+use cede_controller::shield::actuation::Inherited;
 use cede_controller::shield::margin::{self, Departure};
 use cede_controller::shield::reach::Reach;
 use cede_controller::{Bounds, Contract, Plan, Zone};
@@ -142,23 +143,23 @@ mutants! {
         }
     }
     "no latency" in "crossroads": NoLatency {
-        fn departure(contract: &Contract, speed: f32, previous: [f32; 2], command: f32) -> Departure<f32> {
+        fn departure(contract: &Contract, speed: f32, inherited: &Inherited<f32>, command: f32) -> Departure<f32> {
             let prompt = unchecked(contract.to_builder().latency(0.0));
-            margin::departure(&prompt, speed, previous, command)
+            margin::departure(&prompt, speed, inherited, command)
         }
     }
     "stop without the first period" in "crossroads": StopsNow {
-        fn departure(contract: &Contract, speed: f32, previous: [f32; 2], command: f32) -> Departure<f32> {
+        fn departure(contract: &Contract, speed: f32, inherited: &Inherited<f32>, command: f32) -> Departure<f32> {
             Departure {
                 braking: Reach::start(speed),
-                ..margin::departure(contract, speed, previous, command)
+                ..margin::departure(contract, speed, inherited, command)
             }
         }
     }
     "no errors of speed" in "blurred": ExactSpeed {
-        fn departure(contract: &Contract, speed: f32, previous: [f32; 2], command: f32) -> Departure<f32> {
+        fn departure(contract: &Contract, speed: f32, inherited: &Inherited<f32>, command: f32) -> Departure<f32> {
             let exact = unchecked(contract.to_builder().speed_error(0.0));
-            margin::departure(&exact, speed, previous, command)
+            margin::departure(&exact, speed, inherited, command)
         }
     }
     "hazards in the wrong order" in "blind": WrongOrder {

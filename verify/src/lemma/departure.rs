@@ -7,6 +7,7 @@ use super::term::Term;
 use super::{Claim, Lemma};
 use cede_controller::Real;
 use cede_controller::shield::Contract;
+use cede_controller::shield::actuation::Inherited;
 use cede_controller::shield::margin::{self, Departure};
 use cede_controller::shield::reach::Reach;
 
@@ -40,12 +41,12 @@ pub(super) fn lemmas() -> Vec<Lemma> {
             (
                 "the brakes' latency forgotten",
                 &departs(
-                    |contract, speed, previous, command| Departure {
+                    |contract, speed, inherited, command| Departure {
                         braking: Reach::start(speed + Term::of(contract.speed_error())).at_most(
-                            Real::max(previous[1], command),
+                            Real::max(inherited.bounds()[1], command),
                             Term::of(contract.shortest_period()),
                         ),
-                        ..margin::departure(contract, speed, previous, command)
+                        ..margin::departure(contract, speed, inherited, command)
                     },
                     brakes,
                 ),
@@ -149,10 +150,20 @@ impl Pair {
     }
 }
 
-type Rule = fn(&Contract, Term, [Term; 2], Term) -> Departure<Term>;
+type Rule = fn(&Contract, Term, &Inherited<Term>, Term) -> Departure<Term>;
 
-fn forgetful(contract: &Contract, speed: Term, _: [Term; 2], command: Term) -> Departure<Term> {
-    margin::departure(contract, speed, [command; 2], command)
+fn forgetful(
+    contract: &Contract,
+    speed: Term,
+    _: &Inherited<Term>,
+    command: Term,
+) -> Departure<Term> {
+    margin::departure(
+        contract,
+        speed,
+        &Inherited::all(contract, [command; 2]),
+        command,
+    )
 }
 
 /// The ego from now, when a command is given, until the next one is certainly in effect.
@@ -189,7 +200,12 @@ fn departs(rule: Rule, say: impl Fn(&First) -> Claim) -> Claim {
     .map(state);
     let first = First {
         contract,
-        departure: rule(&contract, sensed, [least, most], command),
+        departure: rule(
+            &contract,
+            sensed,
+            &Inherited::all(&contract, [least, most]),
+            command,
+        ),
         speed: sensed,
         command,
         previous,

@@ -4,6 +4,7 @@ use super::contract::any_contract;
 use super::formula::whole_over;
 use super::term::{Node, Term};
 use cede_controller::dangerous::unchecked;
+use cede_controller::shield::actuation::Inherited;
 use cede_controller::shield::margin::Departure;
 use cede_controller::shield::reach::Reach;
 use cede_controller::shield::{Contract, choice, margin};
@@ -60,7 +61,7 @@ pub fn shipped() -> String {
         ["sensed", "previous_least", "previous_most", "command"].map(named);
     file.define(
         "departure (k : contract) (sensed previous_least previous_most command : R) : departs",
-        &margin::departure(k, sensed, [least, most], command),
+        &margin::departure(k, sensed, &Inherited::all(k, [least, most]), command),
     );
     file.define(
         "clearing (k : contract) (from : reach) (target : R) : R * R",

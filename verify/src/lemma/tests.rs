@@ -7,6 +7,7 @@ use super::{Answer, Claim, Solver, lemmas};
 use crate::interval::Interval;
 use cede_controller::Real;
 use cede_controller::dangerous;
+use cede_controller::shield::actuation::Inherited;
 use cede_controller::shield::reach::Reach;
 use cede_controller::shield::{Contract, margin};
 use proptest::prelude::*;
@@ -77,7 +78,7 @@ fn numbers(contract: &Contract) -> Values {
 
 /// Margins of every kind, over any numbers.
 fn margins<R: Real>(contract: &Contract, [s, v, other_v, target]: [R; 4]) -> [R; 6] {
-    let departure = margin::departure(contract, v, [-v, v], s);
+    let departure = margin::departure(contract, v, &Inherited::all(contract, [-v, v]), s);
     let (clears, clearing_speed) = margin::clearing(contract, departure.least, target);
     let rush = margin::rush(contract, other_v, clears);
     let needed = margin::safe_gap(contract, rush.speed, clearing_speed);

@@ -1,6 +1,7 @@
 //! The shield's predicates: its margins, put together as `shield/verified.rs` and `shield/hazard.rs` do.
 
 use cede_controller::Real;
+use cede_controller::shield::actuation::Inherited;
 use cede_controller::shield::{Contract, margin};
 
 /// Inputs of a predicate, at most.
@@ -121,9 +122,14 @@ impl Predicate {
     /// The margin, for values in the order of [`Predicate::inputs`].
     pub(super) fn margin<R: Real>(self, contract: &Contract, values: [R; INPUTS]) -> R {
         let [speed, previous, command, distance, fifth, target] = values;
-        let departure = margin::departure(contract, speed, [previous, previous], command);
+        let departure = margin::departure(
+            contract,
+            speed,
+            &Inherited::all(contract, [previous, previous]),
+            command,
+        );
         let error = R::of(contract.speed_error());
-        let braking = R::of(contract.ego().braking);
+        let braking = margin::braking(contract);
         let stops = |limit| margin::stops_short(contract, limit, departure.braking.rest(braking));
         let clears = || margin::clearing(contract, departure.least, target);
         match self {

@@ -7,6 +7,7 @@ use crate::interval::Interval;
 use cede_controller::Real;
 use cede_controller::dangerous::unchecked;
 use cede_controller::junction::zone::{FAR, Zone};
+use cede_controller::shield::actuation::Inherited;
 use cede_controller::shield::{Contract, Shield, choice, margin};
 use cede_controller::{
     Class, Footprint, Junction, Observation, PathId, Point, Route, Track, Vehicle,
@@ -203,13 +204,24 @@ proptest! {
 fn stand_at_the_target(contract: &Contract, at: &mut [f32; INPUTS], steps: i32) {
     let [speed, previous, command, ..] = at;
     *speed *= 0.05;
-    let least = margin::departure(contract, *speed, [*previous; 2], *command).least;
+    let least = margin::departure(
+        contract,
+        *speed,
+        &Inherited::all(contract, [*previous; 2]),
+        *command,
+    )
+    .least;
     at[5] = f32::from_bits(least.distance.to_bits().saturating_add_signed(steps));
 }
 
 /// For how many periods the plan goes that clears a hazard.
 fn periods([speed, previous, command, _, _, target]: &[f32; INPUTS]) -> f32 {
-    let departure = margin::departure(&WORST, *speed, [*previous; 2], *command);
+    let departure = margin::departure(
+        &WORST,
+        *speed,
+        &Inherited::all(&WORST, [*previous; 2]),
+        *command,
+    );
     let (clears, _) = margin::clearing(&WORST, departure.least, *target);
     margin::periods(&WORST, clears).into()
 }

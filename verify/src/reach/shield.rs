@@ -6,6 +6,7 @@
 use super::states::States;
 use crate::interval::Interval;
 use cede_controller::Real;
+use cede_controller::shield::actuation::Inherited;
 use cede_controller::shield::choice::{self, GRID, grid};
 use cede_controller::shield::reach::Reach;
 use cede_controller::shield::{Contract, margin};
@@ -119,9 +120,14 @@ impl Shield {
 
     fn margins(&self, states: &States, previous: Interval, command: Interval) -> Margins {
         let (contract, zone) = (&self.contract, &self.zone);
-        let departure = margin::departure(contract, states.speed, [previous, previous], command);
+        let departure = margin::departure(
+            contract,
+            states.speed,
+            &Inherited::all(contract, [previous, previous]),
+            command,
+        );
         let limit = states.distance.add(zone.ego.low());
-        let rest = departure.braking.rest(Interval::of(contract.ego().braking));
+        let rest = departure.braking.rest(margin::braking(contract));
         let stop = margin::stops_short(contract, limit, rest);
         let stop = stop.and(self.stop_by_spare(states, previous, command));
         let target = states.distance.add(zone.ego.high());

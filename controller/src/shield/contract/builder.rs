@@ -36,13 +36,14 @@ impl ContractBuilder {
         self
     }
 
-    /// A command takes effect within this time in s, in [0, `period` − 6 `jitter`].
+    /// A command takes effect within this time in s, in [0, 10 `period` − 6 `jitter`].
     pub const fn latency(mut self, latency: f32) -> Self {
         self.numbers.latency = latency;
         self
     }
 
-    /// How far (s) a call may be from the grid of periods, either way, in [0, `period`/8].
+    /// How far (s) a call may be from the grid of periods, either way, in [0, 0.35 `period`], with a rule of precedence
+    /// up to `period`/8.
     pub const fn jitter(mut self, jitter: f32) -> Self {
         self.numbers.jitter = jitter;
         self
@@ -94,6 +95,24 @@ impl ContractBuilder {
     /// [`Ego::emergency`] in m/s², in [the ego's `braking`, the others' `braking`].
     pub const fn ego_emergency(mut self, ego_emergency: f32) -> Self {
         self.numbers.ego.emergency = ego_emergency;
+        self
+    }
+
+    /// [`Ego::lag`] in s, in [0, 1].
+    pub const fn ego_lag(mut self, ego_lag: f32) -> Self {
+        self.numbers.ego.lag = ego_lag;
+        self
+    }
+
+    /// [`Ego::gain`], a share in [0, 0.5].
+    pub const fn ego_gain(mut self, ego_gain: f32) -> Self {
+        self.numbers.ego.gain = ego_gain;
+        self
+    }
+
+    /// [`Ego::disturbance`] in m/s², in [0, 5].
+    pub const fn ego_disturbance(mut self, ego_disturbance: f32) -> Self {
+        self.numbers.ego.disturbance = ego_disturbance;
         self
     }
 

@@ -1,6 +1,7 @@
 //! What is demanded of each number of a contract.
 
 use super::{Contract, Precedence};
+use crate::shield::actuation::FLIGHTS;
 
 /// The first number of a [`Contract`] that is out of its range. Prints as `ego.braking = 9 is outside (0, 8]`, with
 /// a reason where the range depends on other numbers.
@@ -85,7 +86,7 @@ pub(super) const fn first_fault(contract: &Contract) -> Option<ContractError> {
     let Some(rule) = contract.precedence else {
         return None;
     };
-    match (first(&of_precedence(rule)), rule.patience) {
+    match (first(&of_precedence(contract, rule)), rule.patience) {
         (Some(error), _) => Some(error),
         (None, 0) => None,
         (None, _) => match first(&of_turns(contract, rule)) {
@@ -112,9 +113,9 @@ const fn first(demands: &[Demand]) -> Option<ContractError> {
     None
 }
 
-const fn everywhere(contract: &Contract) -> [Demand; 16] {
+const fn everywhere(contract: &Contract) -> [Demand; 19] {
     let (ego, other, follower) = (contract.ego, contract.other, contract.follower);
-    let late = ": a command takes effect before the next one is given, each up to two jitters early or late";
+    let late = ": so many commands are in flight at most, each up to two jitters early or late";
     // Whoever enters a lane ahead of another may do so sooner, and then slower, than planned.
     let keeps = ": it accelerates no harder than other.acceleration, and no harder than it or its follower brakes";
     let fastest = ": it is no faster than the others, and goes as planned at 0.01 m/s at least, in spite of its limit";
@@ -124,23 +125,37 @@ const fn everywhere(contract: &Contract) -> [Demand; 16] {
     let hardest = ": it brakes no harder than other.braking, the hardest of all the others";
     let (tolerance, reaction) = (from(0.0, 10.0), from(0.0, 10.0));
     let (speed, acceleration) = (above(0.0, 100.0), above(0.0, 20.0));
-    let brakes = larger(ego.braking, follower.braking);
-    let launch = above(0.0, smaller(other.acceleration, brakes));
-    let (go, braking) = (from(0.01, ego.acceleration), above(0.0, other.braking));
+    let brakes = larger(strongest(contract, ego.braking), follower.braking);
+    let launch = above(0.0, leads_to(contract, smaller(other.acceleration, brakes)));
+    let go = from(needs(contract, 0.01), ego.acceleration);
+    let hardest_braking = leads_to(contract, other.braking);
+    let braking = Range {
+        open: contract.is_exact(),
+        low: if contract.is_exact() {
+            0.0
+        } else {
+            needs(contract, 0.01)
+        },
+        high: hardest_braking,
+    };
+    let flights = FLIGHTS as f32 * contract.period;
     [
         ("period", contract.period, from(0.01, 1.0), ""),
         (
             "jitter",
             contract.jitter,
-            from(0.0, contract.period / 8.0),
+            from(0.0, 0.35 * contract.period),
             "",
         ),
         (
             "latency",
             contract.latency,
-            from(0.0, contract.period - 6.0 * contract.jitter),
+            from(0.0, flights - 6.0 * contract.jitter),
             late,
         ),
+        ("ego.lag", ego.lag, from(0.0, 1.0), ""),
+        ("ego.gain", ego.gain, from(0.0, 0.5), ""),
+        ("ego.disturbance", ego.disturbance, from(0.0, 5.0), ""),
         ("position_error", contract.position_error, tolerance, ""),
         ("speed_error", contract.speed_error, tolerance, ""),
         ("slack", contract.slack, from(0.01, 10.0), ""),
@@ -148,12 +163,17 @@ const fn everywhere(contract: &Contract) -> [Demand; 16] {
         ("other.acceleration", other.acceleration, acceleration, ""),
         ("other.braking", other.braking, acceleration, ""),
         ("follower.reaction", follower.reaction, reaction, ""),
-        ("follower.braking", follower.braking, braking, hardest),
+        (
+            "follower.braking",
+            follower.braking,
+            above(0.0, other.braking),
+            hardest,
+        ),
         ("ego.braking", ego.braking, braking, leader),
         (
             "ego.emergency",
             ego.emergency,
-            from(ego.braking, other.braking),
+            from(ego.braking, hardest_braking),
             ": it is no weaker than ego.braking, and no harder than other.braking",
         ),
         ("ego.acceleration", ego.acceleration, launch, keeps),
@@ -167,6 +187,26 @@ const fn everywhere(contract: &Contract) -> [Demand; 16] {
     ]
 }
 
+/// What may be commanded so that `most` (m/s²) is the most to which it leads.
+const fn leads_to(contract: &Contract, most: f32) -> f32 {
+    (most - contract.ego.disturbance) / (1.0 + contract.ego.gain)
+}
+
+/// What is to be commanded so that `least` (m/s²) is the least to which it leads.
+const fn needs(contract: &Contract, least: f32) -> f32 {
+    (least + contract.ego.disturbance) / (1.0 - contract.ego.gain)
+}
+
+/// The most (m/s²) to which `command` > 0 leads.
+const fn strongest(contract: &Contract, command: f32) -> f32 {
+    command + (contract.ego.gain * command + contract.ego.disturbance)
+}
+
+/// The least (m/s²) to which `command` > 0 leads.
+const fn weakest(contract: &Contract, command: f32) -> f32 {
+    command - (contract.ego.gain * command + contract.ego.disturbance)
+}
+
 const fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
@@ -175,8 +215,14 @@ const fn smaller(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-const fn of_precedence(rule: Precedence) -> [Demand; 2] {
+const fn of_precedence(contract: &Contract, rule: Precedence) -> [Demand; 3] {
     [
+        (
+            "jitter",
+            contract.jitter,
+            from(0.0, contract.period / 8.0),
+            ": with a rule of precedence, periods are counted",
+        ),
         ("precedence.distance", rule.distance, above(0.0, 200.0), ""),
         ("precedence.braking", rule.braking, above(0.0, 20.0), ""),
     ]
@@ -188,7 +234,7 @@ const fn of_turns(contract: &Contract, rule: Precedence) -> [Demand; 2] {
     // A vehicle whose turn is past stops where the other expects it.
     let stops =
         ": who takes turns stops as hard as it is expected to, and has ego.braking to do so";
-    let braking = above(0.0, contract.ego.braking);
+    let braking = above(0.0, weakest(contract, contract.ego.braking));
     [
         ("precedence.patience", rule.patience as f32, patience, turns),
         ("precedence.braking", rule.braking, braking, stops),
@@ -198,8 +244,11 @@ const fn of_turns(contract: &Contract, rule: Precedence) -> [Demand; 2] {
 /// How far (m/s) below its limit the ego may be held back: what [`unlimited`](crate::shield::margin::unlimited) leaves.
 const fn held(contract: &Contract) -> f32 {
     let ego = contract.ego;
-    let late = (ego.acceleration + ego.braking) * contract.switching();
-    2.0 * contract.speed_error + late + ego.go * contract.period
+    let switched = strongest(contract, ego.acceleration) + strongest(contract, ego.emergency);
+    let disturbed = 2.0 * ego.disturbance / (1.0 - ego.gain);
+    2.0 * contract.speed_error
+        + switched * contract.response()
+        + (strongest(contract, ego.go) + disturbed) * contract.period
 }
 
 /// One that goes is seen: it gets faster, in spite of its limit, than one that may be taken for one at rest.
@@ -240,6 +289,11 @@ mod tests {
             goes_up_to(|c| (c.ego.braking, c.ego.emergency) = (7.0, 7.0)),
             goes_up_to(|c| (c.latency, c.jitter) = (0.03, 0.01)),
             goes_up_to(|c| (c.period, c.latency) = (1.0, 1.0)),
+            goes_up_to(|c| (c.latency, c.ego.lag) = (0.3, 0.2)),
+            goes_up_to(|c| {
+                (c.ego.gain, c.ego.disturbance) = (0.1, 0.3);
+                (c.ego.acceleration, c.ego.go) = (2.0, 2.0);
+            }),
         ];
         for speed in slowest {
             assert!((speed - 0.01).abs() < 1e-5, "{speed} m/s");

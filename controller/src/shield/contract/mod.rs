@@ -60,22 +60,30 @@ pub struct Contract {
 pub struct Ego {
     /// No command accelerates the ego beyond this speed, in m/s, up to the others' `max_speed`; one that is given
     /// while the ego's own state is missing may, by what is then not known of its speed. At least 0.01 m/s more than
-    /// 2 `speed_error` + (`acceleration` + `braking`) (`latency` + 4 `jitter`) + `go` `period`: up to so far below it
-    /// the ego may be held back.
+    /// 2 `speed_error` + (`acceleration` + `emergency`) (`latency` + 4 `jitter` + `lag`) + `go` `period`, all of them as hard as
+    /// they may be achieved: up to so far below it the ego may be held back.
     /// A limiter may keep the vehicle from going faster, and errs by `speed_error` at most. The guarantee holds with
     /// a limiter and without one.
     pub max_speed: f32,
-    /// Largest acceleration that is commanded, in m/s², in (0, the others' `acceleration`], and no larger than the
-    /// larger of `braking` and the follower's.
+    /// Largest acceleration that is commanded, in m/s². What it may lead to is in (0, the others' `acceleration`], and no
+    /// larger than the larger of `braking` and the follower's.
     pub acceleration: f32,
-    /// Acceleration that it achieves, below its limiter's speed, when it must clear a zone, in m/s², in (0, `acceleration`].
+    /// Acceleration that is commanded, below its limiter's speed, when it must clear a zone, in m/s², up to `acceleration`.
+    /// It leads to 0.01 m/s² at least.
     pub go: f32,
-    /// Braking that it achieves, in m/s², in (0, the others' `braking`]. Plans count on it, and while there is one it is
-    /// the hardest that is commanded.
+    /// Braking that plans command, in m/s², and while there is one the hardest that is. It leads to 0.01 m/s² at least, and
+    /// to the others' `braking` at most.
     pub braking: f32,
     /// Braking that is commanded while no plan is safe, in m/s², in [`braking`, the others' `braking`]: all there is.
     /// Nothing counts on it.
     pub emergency: f32,
+    /// Time constant (s), at most, of the first-order lag with which the acceleration follows a command that is in effect,
+    /// in [0, 1].
+    pub lag: f32,
+    /// By which share of a command the acceleration may differ from it, in [0, 0.5].
+    pub gain: f32,
+    /// Acceleration (m/s²), either way, that nobody commands, in [0, 5]: g times the steepest grade, wind.
+    pub disturbance: f32,
 }
 
 /// What another vehicle can do, at most. It follows its route forwards.
@@ -169,6 +177,9 @@ impl Contract {
             go: 3.0,
             braking: 3.0,
             emergency: 3.0,
+            lag: 0.0,
+            gain: 0.0,
+            disturbance: 0.0,
         },
         other: Other {
             max_speed: 15.0,
@@ -204,13 +215,15 @@ impl Contract {
         self.period
     }
 
-    /// A command takes effect within this time in s, in [0, `period` − 6 `jitter`]; until then the one before it does.
+    /// A command takes effect within this time in s, in [0, 10 `period` − 6 `jitter`]; until then those before it do, in
+    /// the order in which they were given.
     #[must_use]
     pub const fn latency(&self) -> f32 {
         self.latency
     }
 
-    /// How far (s) a call may be from the grid of periods, either way, in [0, `period`/8].
+    /// How far (s) a call may be from the grid of periods, either way, in [0, 0.35 `period`], with a rule of precedence
+    /// up to `period`/8.
     #[must_use]
     pub const fn jitter(&self) -> f32 {
         self.jitter
@@ -221,6 +234,27 @@ impl Contract {
     #[must_use]
     pub const fn switching(&self) -> f32 {
         self.latency + 4.0 * self.jitter
+    }
+
+    /// How long (s) a command may take until the ego is certainly no worse off than if it had been followed at once from
+    /// then on: [`Contract::switching`] and the time constant of the lag.
+    #[must_use]
+    pub const fn response(&self) -> f32 {
+        if self.ego.lag == 0.0 {
+            self.switching()
+        } else {
+            self.switching() + self.ego.lag
+        }
+    }
+
+    /// Whether a command may be followed only after the next one was given.
+    pub(super) fn responds_late(&self) -> bool {
+        self.response() > self.shortest_period()
+    }
+
+    /// Whether the ego achieves just what is commanded, once it follows.
+    pub(super) const fn is_exact(&self) -> bool {
+        self.ego.gain == 0.0 && self.ego.disturbance == 0.0
     }
 
     /// The least time (s) from a call that is on time to the next one.
@@ -270,6 +304,16 @@ impl Contract {
     #[must_use]
     pub const fn precedence(&self) -> Option<Precedence> {
         self.precedence
+    }
+
+    /// Whether commands lead to the same under both.
+    pub(super) fn acts_as(&self, former: &Self) -> bool {
+        self.latency == former.latency
+            && self.ego.lag == former.ego.lag
+            && self.ego.gain == former.ego.gain
+            && self.ego.disturbance == former.ego.disturbance
+            && self.ego.emergency == former.ego.emergency
+            && self.ego.acceleration == former.ego.acceleration
     }
 
     /// Whether a plan that is safe under `former` is safe under this contract: the ego acts the same, and less is to be
@@ -322,8 +366,8 @@ mod tests {
         };
         begins(worst(|c| c.period = 0.0), "period = 0 is outside [0.01, 1]");
         begins(
-            worst(|c| c.latency = 0.2),
-            "latency = 0.2 is outside [0, 0.1]: ",
+            worst(|c| c.latency = 1.1),
+            "latency = 1.1 is outside [0, 1]: ",
         );
         begins(
             worst(|c| c.position_error = -1.0),
@@ -331,8 +375,8 @@ mod tests {
         );
         begins(worst(|c| c.slack = 0.0), "slack = 0 is outside [0.01, 10]");
         begins(
-            worst(|c| c.jitter = 0.01),
-            "latency = 0.1 is outside [0, 0.04",
+            worst(|c| (c.jitter, c.latency) = (0.01, 0.95)),
+            "latency = 0.95 is outside [0, 0.94",
         );
         begins(
             worst(|c| c.ego.acceleration = 3.5),

@@ -21,7 +21,7 @@ pub(super) struct Numbers {
     precedence: Option<Precedence>,
 }
 
-/// [`super::Ego`]; without a number for it, emergency braking is `braking`.
+/// [`super::Ego`]; without a number for it, emergency braking is `braking`, and the ego follows a command at once and exactly.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Vehicle {
@@ -31,6 +31,12 @@ struct Vehicle {
     braking: f32,
     #[serde(default)]
     emergency: Option<f32>,
+    #[serde(default)]
+    lag: f32,
+    #[serde(default)]
+    gain: f32,
+    #[serde(default)]
+    disturbance: f32,
 }
 
 impl TryFrom<Numbers> for Contract {
@@ -50,6 +56,9 @@ impl TryFrom<Numbers> for Contract {
                 go: read.ego.go,
                 braking: read.ego.braking,
                 emergency: read.ego.emergency.unwrap_or(read.ego.braking),
+                lag: read.ego.lag,
+                gain: read.ego.gain,
+                disturbance: read.ego.disturbance,
             },
             other: read.other,
             follower: read.follower,
@@ -71,11 +80,11 @@ mod tests {
                 serde_json::from_str::<Contract>(&written).unwrap(),
                 contract
             );
-            let wrong = written.replace("\"latency\":0.1", "\"latency\":0.2");
+            let wrong = written.replace("\"latency\":0.1", "\"latency\":1.2");
             let error = serde_json::from_str::<Contract>(&wrong).unwrap_err();
             let text = std::string::ToString::to_string(&error);
             assert!(
-                text.starts_with("latency = 0.2 is outside [0, 0.1]"),
+                text.starts_with("latency = 1.2 is outside [0, 1]"),
                 "{text}"
             );
         }

@@ -438,14 +438,9 @@ fn commands_that_follow_each_other_within_the_latency_may_all_still_act() {
     for (millis, command) in [(0, 2.0), (100, 1.0), (110, -3.0), (120, -2.0)] {
         memory.command(&WORST, command, Instant::from_millis(millis));
     }
-    assert_eq!(
-        memory.in_effect(&WORST, Instant::from_millis(130)),
-        [-3.0, 2.0]
-    );
-    assert_eq!(
-        memory.in_effect(&WORST, Instant::from_millis(220)),
-        [-2.0; 2]
-    );
+    let acts = |millis| memory.inherited(&WORST, Instant::from_millis(millis));
+    assert_eq!(acts(130).bounds(), [-3.0, 2.0]);
+    assert_eq!(acts(220).bounds(), [-2.0; 2]);
 }
 
 #[test]
