@@ -163,7 +163,7 @@ mutant! { a_stale_plan_is_caught, StalePlan,
 mutant! { a_dropped_latency_is_caught, NoLatency,
     fn departure(contract: &Contract, speed: f32, inherited: &Inherited<f32>, command: f32) -> Departure<f32> {
         let prompt = unchecked(contract.to_builder().latency(0.0));
-        margin::departure(&prompt, speed, inherited, command)
+        margin::departure(&prompt, speed, &Inherited::all(&prompt, inherited.bounds()), command)
     }
 }
 mutant! { a_stop_without_the_first_period_is_caught, StopsNow,

@@ -1,6 +1,7 @@
 //! How commands become acceleration: at any time within the latency, and in any way in between.
 
 use crate::motion::TICK;
+use crate::numbers::Drivetrain;
 use crate::rng::Rng;
 use std::collections::VecDeque;
 
@@ -50,6 +51,62 @@ impl Weakness {
     };
 }
 
+/// Which way the acceleration differs from the command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Way {
+    Up,
+    Down,
+    /// More than what is commanded, either way: harder acceleration, harder braking.
+    More,
+    /// Less than what is commanded.
+    Less,
+    /// Up and down in turns, with the commands.
+    Turns,
+    /// Anything in between, at any time.
+    Wander,
+}
+
+/// What the vehicle does with what its contract leaves open.
+#[derive(Clone, Copy, Debug)]
+struct Whim {
+    drivetrain: Drivetrain,
+    /// Its time constant in s.
+    lag: f64,
+    way: Way,
+}
+
+impl Whim {
+    fn random(drivetrain: Drivetrain, rng: &mut Rng) -> Self {
+        let ways = [
+            Way::Up,
+            Way::Down,
+            Way::More,
+            Way::Less,
+            Way::Turns,
+            Way::Wander,
+        ];
+        let any = rng.unit();
+        Self {
+            drivetrain,
+            lag: drivetrain.lag * rng.pick(&[0.0, 1.0, 1.0, any]),
+            way: rng.pick(&ways),
+        }
+    }
+
+    fn off(&self, command: f64, turn: bool, rng: &mut Rng) -> f64 {
+        let share = match self.way {
+            Way::Up => 1.0,
+            Way::Down => -1.0,
+            Way::More => command.signum(),
+            Way::Less => -command.signum(),
+            Way::Turns if turn => 1.0,
+            Way::Turns => -1.0,
+            Way::Wander => rng.within(-1.0, 1.0),
+        };
+        share * self.drivetrain.off(command)
+    }
+}
+
 /// A command on its way to the wheels.
 #[derive(Clone, Copy, Debug)]
 struct Pending {
@@ -65,6 +122,10 @@ pub struct Actuator {
     /// Ticks until a command is in effect at the latest.
     latency: u64,
     weakness: Weakness,
+    /// None, if it does just what is commanded.
+    whim: Option<Whim>,
+    /// A command is in effect; before, it is what the vehicle did.
+    commanded: bool,
     in_effect: f64,
     pending: VecDeque<Pending>,
     turn: bool,
@@ -79,10 +140,14 @@ impl Actuator {
         takeover: Takeover,
         latency: u64,
         weakness: Weakness,
+        drivetrain: Drivetrain,
         acceleration: f64,
-        rng: Rng,
+        mut rng: Rng,
     ) -> Self {
+        let inexact = !drivetrain.is_exact();
         Self {
+            commanded: false,
+            whim: inexact.then(|| Whim::random(drivetrain, &mut rng)),
             takeover,
             latency,
             weakness,
@@ -114,6 +179,7 @@ impl Actuator {
     pub fn acceleration(&mut self, tick: u64) -> f64 {
         while let Some(next) = self.pending.front().filter(|next| next.due <= tick) {
             self.in_effect = next.acceleration;
+            self.commanded = true;
             self.pending.pop_front();
         }
         let wanted = match self.pending.front() {
@@ -139,8 +205,13 @@ impl Actuator {
         } else {
             wanted
         };
-        if self.weakness.lag > 0.0 {
-            self.felt += (wanted - self.felt) * (1.0 - (-TICK / self.weakness.lag).exp());
+        let whim = self.whim;
+        let commanded = whim.filter(|_| self.commanded);
+        let off = commanded.map_or(0.0, |whim| whim.off(wanted, self.turn, &mut self.rng));
+        let wanted = wanted + off;
+        let lag = self.weakness.lag + whim.map_or(0.0, |whim| whim.lag);
+        if lag > 0.0 {
+            self.felt += (wanted - self.felt) * (1.0 - (-TICK / lag).exp());
         } else {
             self.felt = wanted;
         }
@@ -158,10 +229,17 @@ impl Actuator {
 mod tests {
     use super::*;
 
+    const EXACT: Drivetrain = Drivetrain {
+        lag: 0.0,
+        gain: 0.0,
+        disturbance: 0.0,
+    };
+
     #[test]
     fn every_takeover_stays_between_the_commands_and_ends_in_time() {
         for takeover in Takeover::ALL {
-            let mut actuator = Actuator::new(takeover, 20, Weakness::NONE, -1.0, Rng::new(4));
+            let mut actuator =
+                Actuator::new(takeover, 20, Weakness::NONE, EXACT, -1.0, Rng::new(4));
             for round in 0..5 {
                 let (old, new) = if round % 2 == 0 {
                     (-1.0, 2.0)
@@ -184,7 +262,7 @@ mod tests {
             brakes: 0.5,
             lag: 0.1,
         };
-        let mut actuator = Actuator::new(Takeover::Prompt, 0, weak, 0.0, Rng::new(1));
+        let mut actuator = Actuator::new(Takeover::Prompt, 0, weak, EXACT, 0.0, Rng::new(1));
         actuator.command(0, -4.0);
         let after: Vec<f64> = (0..200).map(|tick| actuator.acceleration(tick)).collect();
         assert!((after[19] + 2.0 * (1.0 - (-1.0_f64).exp())).abs() < 1e-9);

@@ -20,7 +20,8 @@ pub fn fits(
     other: State,
     areas: &[Area],
 ) -> bool {
-    let late = numbers.period + numbers.latency + 2.0 * numbers.jitter;
+    let response = numbers.latency + 4.0 * numbers.jitter + numbers.drivetrain.lag;
+    let late = numbers.period + response;
     let plan = f64::from(go) * numbers.period;
     let spare = SPARE + 6.0 * numbers.position_error;
     let error = 2.0 * numbers.speed_error;
@@ -32,18 +33,21 @@ pub fn fits(
     let most = if go > 0 {
         numbers.ego.acceleration
     } else {
-        command.max(0.0)
+        command.max(0.0) + numbers.drivetrain.off(command)
     };
     let farthest = fast
         .after(most, late, f64::INFINITY)
-        .after(numbers.go, plan, f64::INFINITY)
-        .rest(numbers.ego.braking);
+        .after(numbers.ego.acceleration, plan, f64::INFINITY)
+        .rest(numbers.brakes);
     let slow = State {
         v: (ego.v - error).max(0.0),
         ..ego
     };
     let slow = slow.after(-numbers.ego.braking, late, f64::INFINITY);
-    let cap = numbers.ego.speed - error - numbers.ego.acceleration * late;
+    let switched = numbers.ego.acceleration + numbers.ego.braking;
+    let cap = numbers.ego.speed - error - switched * late;
+    // One that stands while its brakes let go starts later.
+    let late = late + numbers.drivetrain.lag * numbers.ego.braking / numbers.go;
     areas.iter().all(|area| {
         let over = ego.s >= area.ego[1] + spare || other.s >= area.other[1] + spare;
         let stops = farthest + spare < area.ego[0];

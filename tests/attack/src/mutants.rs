@@ -145,7 +145,30 @@ mutants! {
     "no latency" in "crossroads": NoLatency {
         fn departure(contract: &Contract, speed: f32, inherited: &Inherited<f32>, command: f32) -> Departure<f32> {
             let prompt = unchecked(contract.to_builder().latency(0.0));
-            margin::departure(&prompt, speed, inherited, command)
+            margin::departure(&prompt, speed, &Inherited::all(&prompt, inherited.bounds()), command)
+        }
+    }
+    "no lag" in "drivetrain": NoLag {
+        fn departure(contract: &Contract, speed: f32, inherited: &Inherited<f32>, command: f32) -> Departure<f32> {
+            let prompt = unchecked(contract.to_builder().ego_lag(0.0));
+            margin::departure(&prompt, speed, &Inherited::all(&prompt, inherited.bounds()), command)
+        }
+    }
+    "no gain" in "drivetrain": NoGain {
+        fn departure(contract: &Contract, speed: f32, inherited: &Inherited<f32>, command: f32) -> Departure<f32> {
+            let exact = unchecked(contract.to_builder().ego_gain(0.0).ego_disturbance(0.0));
+            margin::departure(&exact, speed, inherited, command)
+        }
+
+        fn rest(contract: &Contract, from: Reach<f32>, time: f32) -> f32 {
+            let exact = unchecked(contract.to_builder().ego_gain(0.0).ego_disturbance(0.0));
+            margin::rest(&exact, from, time)
+        }
+    }
+    "one command in flight" in "drivetrain": OneInFlight {
+        fn departure(contract: &Contract, speed: f32, inherited: &Inherited<f32>, command: f32) -> Departure<f32> {
+            let newest = inherited.parts().last().map_or([command; 2], |part| part.bounds);
+            margin::departure(contract, speed, &Inherited::all(contract, newest), command)
         }
     }
     "stop without the first period" in "crossroads": StopsNow {

@@ -19,6 +19,10 @@ pub struct Numbers {
     pub ego: Means,
     /// The acceleration that the ego surely achieves in m/s².
     pub go: f64,
+    /// The braking that the ego surely achieves in m/s².
+    pub brakes: f64,
+    /// How the ego follows commands.
+    pub drivetrain: Drivetrain,
     /// Every other.
     pub other: Means,
     /// Reaction of one behind the ego in s.
@@ -27,6 +31,31 @@ pub struct Numbers {
     pub follower_braking: f64,
     /// The rule of precedence that everybody keeps.
     pub rule: Option<Rule>,
+}
+
+/// How far an ego may be from what is commanded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drivetrain {
+    /// Longest time constant in s with which the acceleration follows.
+    pub lag: f64,
+    /// Share of a command by which the acceleration may differ from it.
+    pub gain: f64,
+    /// Acceleration in m/s², either way, that nobody commands.
+    pub disturbance: f64,
+}
+
+impl Drivetrain {
+    /// By how much (m/s²) the acceleration may differ from `command`.
+    #[must_use]
+    pub fn off(&self, command: f64) -> f64 {
+        self.gain * command.abs() + self.disturbance
+    }
+
+    /// Whether it does just what is commanded, at once.
+    #[must_use]
+    pub fn is_exact(&self) -> bool {
+        self.lag == 0.0 && self.gain == 0.0 && self.disturbance == 0.0
+    }
 }
 
 /// Bounds of one vehicle's motion.
@@ -58,6 +87,12 @@ impl Numbers {
     #[must_use]
     pub fn of(contract: &Contract) -> Self {
         let (ego, other, follower) = (contract.ego(), contract.other(), contract.follower());
+        let drivetrain = Drivetrain {
+            lag: ego.lag.into(),
+            gain: ego.gain.into(),
+            disturbance: ego.disturbance.into(),
+        };
+        let [go, braking, acceleration] = [ego.go, ego.braking, ego.acceleration].map(f64::from);
         Self {
             period: contract.period().into(),
             jitter: contract.jitter().into(),
@@ -66,10 +101,12 @@ impl Numbers {
             speed_error: contract.speed_error().into(),
             ego: Means {
                 speed: ego.max_speed.into(),
-                acceleration: ego.acceleration.into(),
-                braking: ego.braking.into(),
+                acceleration: acceleration + drivetrain.off(acceleration),
+                braking: braking + drivetrain.off(braking),
             },
-            go: ego.go.into(),
+            go: go - drivetrain.off(go),
+            brakes: braking - drivetrain.off(braking),
+            drivetrain,
             other: Means {
                 speed: other.max_speed.into(),
                 acceleration: other.acceleration.into(),

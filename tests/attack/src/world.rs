@@ -89,6 +89,7 @@ fn body(setup: &Setup<'_>, numbers: &Numbers, car: &Car, rng: &mut Rng) -> Body 
             car.takeover,
             latency,
             outside.weakness,
+            numbers.drivetrain,
             car.acceleration,
             rng.fork(),
         ),
@@ -215,6 +216,7 @@ impl<'s, R: Rules + Clone> World<'s, R> {
                 self.setup.cars[i].takeover,
                 ticks(self.numbers.latency * self.setup.outside.latency),
                 self.setup.outside.weakness,
+                self.numbers.drivetrain,
                 body.felt,
                 self.rng.fork(),
             );

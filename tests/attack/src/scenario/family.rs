@@ -174,6 +174,37 @@ pub const FAMILIES: &[Family] = &[
         ..ONE
     },
     Family {
+        name: "drivetrain",
+        about: "several commands in flight, lag, gain and disturbance",
+        ways: |rng| match rng.below(3) {
+            0 => sketch::merge(4, Users::Mixed, rng),
+            1 => sketch::crossroads(6, Users::Cars, rng),
+            _ => sketch::star(5, Users::Mixed, rng),
+        },
+        terms: |rng| Terms::usual(rng).perhaps_blurred(rng).driven(rng),
+        cast: |rng| Cast::one(1 + rng.below(5)),
+        ..ONE
+    },
+    Family {
+        name: "real-car",
+        about: "delay 0.3 s, lag 0.2 s, gain ± 10 %, jitter ± 30 %, errors of 0.3 m and 0.3 m/s, tracks missing for up to 5 periods, two candidates, all at once",
+        ways: |rng| match rng.below(3) {
+            0 => sketch::merge(4, Users::Mixed, rng),
+            1 => sketch::crossroads(9, Users::Cars, rng),
+            _ => sketch::star(5, Users::Mixed, rng),
+        },
+        terms: |rng| Terms::usual(rng).real(rng),
+        sensing: |rng| Sensing {
+            gaps: 0.03,
+            bursts: rng.pick(&[0.0, 0.01]),
+            undecided: rng.chance(0.5),
+            blinking: true,
+            ..Sensing::PLAIN
+        },
+        cast: |rng| Cast::one(1 + rng.below(5)),
+        ..ONE
+    },
+    Family {
         name: "gaps",
         about: "tracks are missing, for a moment or for seconds",
         ways: |rng| sketch::star(5, Users::Mixed, rng),
@@ -241,6 +272,21 @@ pub const FAMILIES: &[Family] = &[
         name: "all-merge",
         about: "every vehicle has the shield, into one exit",
         ways: |rng| sketch::merge(4, Users::Mixed, rng),
+        ..ALL
+    },
+    Family {
+        name: "all-drivetrain",
+        about: "every vehicle has the shield and a drivetrain that is late and not exact",
+        ways: |rng| match rng.below(2) {
+            0 => sketch::merge(4, Users::Mixed, rng),
+            _ => sketch::star(5, Users::Cars, rng),
+        },
+        terms: |rng| {
+            Terms::usual(rng)
+                .perhaps_blurred(rng)
+                .among_equals(rng)
+                .driven(rng)
+        },
         ..ALL
     },
     Family {
@@ -323,6 +369,22 @@ pub const FAMILIES: &[Family] = &[
                 .perhaps_blurred(rng)
                 .other_times(rng)
                 .among_equals(rng)
+                .with_rule(rng)
+        },
+        cast: |rng| Cast {
+            start: rng.pick(&[Start::Rest, Start::Far]),
+            ..Cast::all(2 + rng.below(3))
+        },
+        ..STOP
+    },
+    Family {
+        name: "stop-drivetrain",
+        about: "a rule of precedence among drivetrains that are late and not exact",
+        terms: |rng| {
+            Terms::usual(rng)
+                .perhaps_blurred(rng)
+                .among_equals(rng)
+                .driven(rng)
                 .with_rule(rng)
         },
         cast: |rng| Cast {

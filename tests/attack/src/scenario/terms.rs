@@ -12,6 +12,10 @@ pub struct Terms {
     pub times: [f32; 3],
     /// The ego's highest speed and braking.
     pub ego: [f32; 2],
+    /// The ego's emergency braking is harder by this factor.
+    pub emergency: f32,
+    /// The ego's lag in s, the share of its gain's error and the disturbance in m/s².
+    pub drivetrain: [f32; 3],
     /// The others' highest speed, acceleration and braking.
     pub other: [f32; 3],
     /// Reaction and braking of followers.
@@ -26,6 +30,8 @@ impl Terms {
         errors: [0.0; 2],
         times: [0.1, 0.1, 0.0],
         ego: [15.0, 3.0],
+        emergency: 1.0,
+        drivetrain: [0.0; 3],
         other: [15.0, 3.0, 8.0],
         follower: [0.5, 4.0],
         rule: None,
@@ -38,11 +44,14 @@ impl Terms {
             errors,
             times,
             ego,
+            emergency,
+            drivetrain: [lag, gain, disturbance],
             other,
             follower,
             rule,
         } = *self;
         let launch = other[1].min(ego[1].max(follower[1])).min(3.0);
+        let launch = (launch - disturbance) / (1.0 + gain);
         Contract::builder()
             .position_error(errors[0])
             .speed_error(errors[1])
@@ -51,6 +60,10 @@ impl Terms {
             .jitter(times[2])
             .ego_max_speed(ego[0].min(other[0]))
             .ego_braking(ego[1])
+            .ego_emergency(emergency * ego[1])
+            .ego_lag(lag)
+            .ego_gain(gain)
+            .ego_disturbance(disturbance)
             .ego_acceleration(launch)
             .ego_go(launch)
             .other_max_speed(other[0])
@@ -126,6 +139,43 @@ impl Terms {
             [0.2, 0.05, 0.025],
             [0.2, 0.0, 0.02],
         ]);
+        self
+    }
+
+    /// With commands in flight, lag, gain and disturbance.
+    #[must_use]
+    pub fn driven(mut self, rng: &mut Rng) -> Self {
+        self.times = rng.pick(&[
+            [0.1, 0.3, 0.0],
+            [0.1, 0.3, 0.0125],
+            [0.1, 0.2, 0.0],
+            [0.1, 0.15, 0.01],
+            [0.1, 0.0, 0.0],
+            [0.05, 0.2, 0.005],
+            [0.2, 0.5, 0.0],
+        ]);
+        self.drivetrain = rng.pick(&[
+            [0.2, 0.1, 0.0],
+            [0.2, 0.1, 0.2],
+            [0.2, 0.0, 0.0],
+            [0.0, 0.1, 0.0],
+            [0.0, 0.0, 0.5],
+            [0.4, 0.05, 0.1],
+        ]);
+        self.emergency = rng.pick(&[1.0, 1.2]);
+        self.ego[0] = self.ego[0].max(8.0);
+        self
+    }
+
+    /// All that the manual says of a real car, at once: response, gain, jitter, sensors.
+    #[must_use]
+    pub fn real(mut self, rng: &mut Rng) -> Self {
+        self.times = [0.1, 0.3, rng.pick(&[0.03, 0.03, 0.0])];
+        self.drivetrain = [0.2, 0.1, 0.0];
+        self.errors = [0.3, 0.3];
+        self.ego = [15.0, rng.pick(&[3.0, 4.0, 5.0])];
+        self.other = [15.0, 3.0, 9.0];
+        self.emergency = 1.2;
         self
     }
 
