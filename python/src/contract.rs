@@ -23,7 +23,7 @@ type Number = (
     fn(ContractBuilder, f32) -> ContractBuilder,
 );
 
-const NUMBERS: [Number; 16] = [
+const NUMBERS: [Number; 19] = [
     ("period", Numbers::period, ContractBuilder::period),
     ("latency", Numbers::latency, ContractBuilder::latency),
     ("jitter", Numbers::jitter, ContractBuilder::jitter),
@@ -58,6 +58,13 @@ const NUMBERS: [Number; 16] = [
         "ego_emergency",
         |c| c.ego().emergency,
         ContractBuilder::ego_emergency,
+    ),
+    ("ego_lag", |c| c.ego().lag, ContractBuilder::ego_lag),
+    ("ego_gain", |c| c.ego().gain, ContractBuilder::ego_gain),
+    (
+        "ego_disturbance",
+        |c| c.ego().disturbance,
+        ContractBuilder::ego_disturbance,
     ),
     (
         "other_max_speed",

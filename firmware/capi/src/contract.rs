@@ -13,9 +13,10 @@ use core::ffi::CStr;
 pub struct cede_contract {
     /// Time from one decision to the next in s, in [0.01, 1].
     pub period: f32,
-    /// A command takes effect within this time in s, in [0, period - 6 jitter].
+    /// A command takes effect within this time in s, in [0, 10 period - 6 jitter].
     pub latency: f32,
-    /// How far (s) a call may be from the grid of periods, either way, in [0, period/8].
+    /// How far (s) a call may be from the grid of periods, either way, in [0, 0.35 period]; with precedence up to
+    /// period/8.
     pub jitter: f32,
     /// Largest error of a sensed arc length in m, in [0, 10].
     pub position_error: f32,
@@ -25,14 +26,22 @@ pub struct cede_contract {
     pub slack: f32,
     /// No command accelerates the ego beyond this speed in m/s, in (0, other_max_speed].
     pub ego_max_speed: f32,
-    /// Hardest acceleration that is commanded in m/s^2, in (0, other_acceleration].
+    /// Hardest acceleration that is commanded in m/s^2; what it may lead to is in (0, other_acceleration].
     pub ego_acceleration: f32,
-    /// Acceleration that the ego achieves when it must clear a zone, in m/s^2, in [0.01, ego_acceleration].
+    /// Acceleration that is commanded when the ego must clear a zone, in m/s^2, up to ego_acceleration; it leads to 0.01 at
+    /// least.
     pub ego_go: f32,
-    /// Braking that the ego achieves, in m/s^2, in (0, other_braking]; the hardest that is commanded while there is a plan.
+    /// Braking that plans command in m/s^2, the hardest while there is one; it leads to 0.01 at least and other_braking at
+    /// most.
     pub ego_braking: f32,
     /// Braking that is commanded while no plan is safe, in m/s^2, in [ego_braking, other_braking]; 0: ego_braking.
     pub ego_emergency: f32,
+    /// Time constant in s, at most, of the lag with which the ego's acceleration follows a command, in [0, 1].
+    pub ego_lag: f32,
+    /// By which share of a command the ego's acceleration may differ from it, in [0, 0.5].
+    pub ego_gain: f32,
+    /// Acceleration in m/s^2, either way, that nobody commands, in [0, 5]: g times the steepest grade, wind.
+    pub ego_disturbance: f32,
     /// Highest speed of another in m/s, in (0, 100].
     pub other_max_speed: f32,
     /// Hardest acceleration of another in m/s^2, in (0, 20].
@@ -85,6 +94,9 @@ pub enum cede_contract_field {
     PrecedenceBraking = 17,
     PrecedencePatience = 18,
     EgoEmergency = 19,
+    EgoLag = 20,
+    EgoGain = 21,
+    EgoDisturbance = 22,
     Other = 255,
 }
 
@@ -112,6 +124,9 @@ pub(crate) const CONTRACT_FIELD: &[(u8, &CStr)] = {
         (Field::PrecedenceBraking as u8, c"precedence.braking"),
         (Field::PrecedencePatience as u8, c"precedence.patience"),
         (Field::EgoEmergency as u8, c"ego.emergency"),
+        (Field::EgoLag as u8, c"ego.lag"),
+        (Field::EgoGain as u8, c"ego.gain"),
+        (Field::EgoDisturbance as u8, c"ego.disturbance"),
         (Field::Other as u8, c"other"),
     ]
 };
@@ -177,6 +192,9 @@ fn sound(numbers: &cede_contract) -> Result<Contract, ContractError> {
         .ego_go(numbers.ego_go)
         .ego_braking(numbers.ego_braking)
         .ego_emergency(emergency)
+        .ego_lag(numbers.ego_lag)
+        .ego_gain(numbers.ego_gain)
+        .ego_disturbance(numbers.ego_disturbance)
         .other_max_speed(numbers.other_max_speed)
         .other_acceleration(numbers.other_acceleration)
         .other_braking(numbers.other_braking)
@@ -207,6 +225,9 @@ pub fn plain(contract: &Contract) -> cede_contract {
         } else {
             0.0
         },
+        ego_lag: ego.lag,
+        ego_gain: ego.gain,
+        ego_disturbance: ego.disturbance,
         other_max_speed: other.max_speed,
         other_acceleration: other.acceleration,
         other_braking: other.braking,
@@ -257,6 +278,9 @@ fn field(name: &str) -> cede_contract_field {
         "precedence.braking" => Field::PrecedenceBraking,
         "precedence.patience" => Field::PrecedencePatience,
         "ego.emergency" => Field::EgoEmergency,
+        "ego.lag" => Field::EgoLag,
+        "ego.gain" => Field::EgoGain,
+        "ego.disturbance" => Field::EgoDisturbance,
         _ => Field::Other,
     }
 }

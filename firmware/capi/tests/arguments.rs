@@ -82,10 +82,11 @@ proptest! {
             (&mut contract.other_max_speed, known.other_max_speed), (&mut contract.other_acceleration, known.other_acceleration),
             (&mut contract.other_braking, known.other_braking), (&mut contract.follower_reaction, known.follower_reaction),
             (&mut contract.follower_braking, known.follower_braking),
-            (&mut contract.ego_emergency, known.ego_emergency),
+            (&mut contract.ego_emergency, known.ego_emergency), (&mut contract.ego_lag, known.ego_lag),
+            (&mut contract.ego_gain, known.ego_gain), (&mut contract.ego_disturbance, known.ego_disturbance),
         ];
         for (i, (number, known)) in pairs.into_iter().enumerate() {
-            if usual % 18 != i as u32 {
+            if usual % 21 != i as u32 {
                 *number = known;
             }
         }

@@ -36,6 +36,9 @@ class Contract:
     ego_go: float
     ego_braking: float
     ego_emergency: float
+    ego_lag: float
+    ego_gain: float
+    ego_disturbance: float
     other_max_speed: float
     other_acceleration: float
     other_braking: float
@@ -57,6 +60,9 @@ class Contract:
         ego_go: float = ...,
         ego_braking: float = ...,
         ego_emergency: float = ...,
+        ego_lag: float = ...,
+        ego_gain: float = ...,
+        ego_disturbance: float = ...,
         other_max_speed: float = ...,
         other_acceleration: float = ...,
         other_braking: float = ...,

@@ -9,9 +9,17 @@ pub struct Deviation {
     pub latency: f32,
     /// The ego brakes by this factor of what it is commanded.
     pub braking: f32,
-    /// Time constant in s with which the ego's acceleration follows the command in effect.
+    /// The ego's acceleration follows with a time constant that is larger by this factor,
+    pub slower: f32,
+    /// and by this many seconds.
     pub lag: f32,
-    /// Places (m) and speeds (m/s) err by so much more than the contract allows for.
+    /// The ego's acceleration differs from the command in effect by so many times what the contract allows for.
+    pub gain: f32,
+    /// What nobody commands is larger by this factor.
+    pub disturbance: f32,
+    /// Places and speeds err by so many times what the contract allows for,
+    pub errors: f32,
+    /// and by this much more, in m and m/s.
     pub error: f32,
     /// Probability that a track is missing in an observation.
     pub dropout: f64,
@@ -38,7 +46,11 @@ impl Deviation {
         acceleration: 1.0,
         latency: 1.0,
         braking: 1.0,
+        slower: 1.0,
         lag: 0.0,
+        gain: 1.0,
+        disturbance: 1.0,
+        errors: 1.0,
         error: 0.0,
         dropout: 0.0,
         frozen: 0.0,
@@ -50,7 +62,7 @@ impl Deviation {
 const NONE: Deviation = Deviation::NONE;
 
 /// The rows of the table. The first one is within the contract.
-pub const ROWS: [Row; 17] = [
+pub const ROWS: [Row; 21] = [
     row("within the contract", NONE),
     row(
         "others accelerate 1.5 ×",
@@ -97,6 +109,28 @@ pub const ROWS: [Row; 17] = [
     row("lag 0.1 s", Deviation { lag: 0.1, ..NONE }),
     row("lag 0.2 s", Deviation { lag: 0.2, ..NONE }),
     row("lag 0.3 s", Deviation { lag: 0.3, ..NONE }),
+    row(
+        "lag 2 ×",
+        Deviation {
+            slower: 2.0,
+            ..NONE
+        },
+    ),
+    row("gain error 2 ×", Deviation { gain: 2.0, ..NONE }),
+    row(
+        "disturbance 2 ×",
+        Deviation {
+            disturbance: 2.0,
+            ..NONE
+        },
+    ),
+    row(
+        "sensors err 2 ×",
+        Deviation {
+            errors: 2.0,
+            ..NONE
+        },
+    ),
     row(
         "sensors err 0.3 m, 0.3 m/s more",
         Deviation { error: 0.3, ..NONE },

@@ -45,6 +45,8 @@ struct Encounter<'s> {
     in_effect: f32,
     /// The ego's acceleration, which follows the command in effect.
     acceleration: f32,
+    /// Which way the ego's acceleration differs from that: more of it or less, and up or down, −1 to 1 each.
+    whim: [f32; 2],
     /// The sensed states of this and earlier calls, the ego's first.
     seen: Vec<Option<State>>,
     flagged: bool,
@@ -64,6 +66,13 @@ pub(super) fn run(
         acceleration: 0.0,
         left: 0,
     });
+    let ego = contract.ego();
+    // Contracts of an exact drivetrain keep their encounters.
+    let whim = if ego.gain > 0.0 || ego.disturbance > 0.0 {
+        [rng.random_range(-1.0..=1.0), rng.random_range(-1.0..=1.0)]
+    } else {
+        [0.0; 2]
+    };
     let encounter = Encounter {
         scenario,
         deviation,
@@ -76,6 +85,7 @@ pub(super) fn run(
         sent: VecDeque::new(),
         in_effect: 0.0,
         acceleration: 0.0,
+        whim,
         seen: Vec::new(),
         flagged: false,
         rng,
@@ -179,8 +189,9 @@ impl Encounter<'_> {
             return;
         }
         let contract = self.scenario.setup.contract;
-        let place = contract.position_error() + self.deviation.error;
-        let speed = contract.speed_error() + self.deviation.error;
+        let bound = |error: f32| error * self.deviation.errors + self.deviation.error;
+        let place = bound(contract.position_error());
+        let speed = bound(contract.speed_error());
         let missing = self.deviation.dropout;
         let rng = &mut self.rng;
         let sensed = self.states.iter().enumerate().map(|(i, state)| {
@@ -239,13 +250,18 @@ impl Encounter<'_> {
             self.in_effect = command;
             self.sent.pop_front();
         }
+        let (ego, deviation) = (self.scenario.setup.contract.ego(), self.deviation);
         let wanted = if self.in_effect < 0.0 {
-            self.in_effect * self.deviation.braking
+            self.in_effect * deviation.braking
         } else {
             self.in_effect
         };
-        let follows = if self.deviation.lag > 0.0 {
-            1.0 - (-DT / self.deviation.lag).exp()
+        let [more, up] = self.whim;
+        let gain = 1.0 + more * ego.gain * deviation.gain;
+        let wanted = wanted * gain + up * ego.disturbance * deviation.disturbance;
+        let lag = ego.lag * deviation.slower + deviation.lag;
+        let follows = if lag > 0.0 {
+            1.0 - (-DT / lag).exp()
         } else {
             1.0
         };
