@@ -23,7 +23,7 @@ async function compileController() {
 
 // One vehicle at one junction; the first path is the ego's.
 class Controller {
-    // `record`, if it is given, is told every call with its words and its answer.
+    // `record`, if it is given, is told every call with its words and its answer. Call 255 is the beginning.
     constructor(module, record) {
         const { exports } = new WebAssembly.Instance(module);
         this.ask = exports.call;
@@ -31,6 +31,7 @@ class Controller {
         this.words = new Uint32Array(exports.memory.buffer, exports.words(), 1024);
         this.numbers = new Float32Array(exports.memory.buffer, exports.words(), 1024);
         this.record = record;
+        if (record) record(255, [], 0, []);
     }
 
     // Writes the words of a question from place `at` on; a whole number is { word }.

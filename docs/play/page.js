@@ -33,8 +33,8 @@ class Page {
         this.accepted = this.wanted;
         this.controls();
         this.open(this.site.id);
-        if (this.still) this.world.advance(3.5);
         this.listen();
+        this.goTo(new URLSearchParams(location.hash.slice(1)));
     }
 
     // -- what is chosen --------------------------------------------------------------------------------------------
@@ -74,6 +74,25 @@ class Page {
         write("see", this.site.see);
         this.selected = 0;
         this.restart();
+    }
+
+    // A moment of a link: #site=ring&turn=left&at=6.5 stands still there. Who wants no motion gets a moment, too.
+    goTo(link) {
+        if (SITES.some(site => site.id === link.get("site"))) this.open(link.get("site"));
+        if (link.get("turn") in this.site.turns) {
+            this.turn = link.get("turn");
+            this.restart();
+        }
+        chosen("sites", this.site.id);
+        chosen("turns", this.turn);
+        const at = Number(link.get("at") ?? (this.still ? 4 : 0));
+        if (!(at > 0)) return;
+        while (this.world.time < Math.min(at, 60) && !this.world.ended) {
+            this.world.advance(TICK);
+            if (this.world.history.at(-1)?.time !== this.shown) this.panel.show(this.world);
+            this.shown = this.world.history.at(-1)?.time;
+        }
+        this.pause(true);
     }
 
     restart() {
@@ -198,7 +217,7 @@ class Page {
     }
 
     pull(event) {
-        if (this.dragged) this.dragged.goal = this.view.tracks(this.world)[this.dragged.path].project(this.place(event));
+        if (this.dragged) this.dragged.goal = this.world.ways[this.dragged.path].project(this.place(event));
     }
 
     release() {

@@ -149,7 +149,7 @@ class Panel {
         const line = make("li", {}, time, make("span", { textContent: words }));
         line.dataset.tone = tone;
         element("log").prepend(line);
-        while (element("log").children.length > 7) element("log").lastChild.remove();
+        while (element("log").children.length > 5) element("log").lastChild.remove();
     }
 
     // The chart of the last 12 s.

@@ -9,6 +9,61 @@ const KINDS = {
     pedestrian: { word: 2, length: 0.7, width: 0.7, speed: 1.4 },
 };
 
+const limit = (value, low, high) => Math.min(Math.max(value, low), high);
+
+// A polyline by arc length.
+class Polyline {
+    constructor(points) {
+        this.points = points;
+        this.arc = [0];
+        for (let i = 1; i < points.length; i++) {
+            const [[a, b], [c, d]] = [points[i - 1], points[i]];
+            this.arc.push(this.arc[i - 1] + Math.hypot(c - a, d - b));
+        }
+        this.length = this.arc[this.arc.length - 1];
+    }
+
+    at(s) {
+        const i = this.segment(s);
+        const share = (limit(s, 0, this.length) - this.arc[i]) / (this.arc[i + 1] - this.arc[i]);
+        const [[a, b], [c, d]] = [this.points[i], this.points[i + 1]];
+        return [a + share * (c - a), b + share * (d - b)];
+    }
+
+    // Direction at s, as an angle.
+    heading(s) {
+        const i = this.segment(s);
+        const [[a, b], [c, d]] = [this.points[i], this.points[i + 1]];
+        return Math.atan2(d - b, c - a);
+    }
+
+    segment(s) {
+        let i = 0;
+        while (i < this.points.length - 2 && this.arc[i + 1] < s) i++;
+        return i;
+    }
+
+    // The points from one arc length to another.
+    slice(from, to) {
+        const [a, b] = [limit(from, 0, this.length), limit(to, 0, this.length)];
+        const inside = this.points.filter((_, i) => this.arc[i] > a && this.arc[i] < b);
+        return [this.at(a), ...inside, this.at(b)];
+    }
+
+    // The arc length of the nearest place to a point.
+    project([x, y]) {
+        let best = [Infinity, 0];
+        for (let i = 0; i + 1 < this.points.length; i++) {
+            const [[a, b], [c, d]] = [this.points[i], this.points[i + 1]];
+            const length = this.arc[i + 1] - this.arc[i];
+            const share = limit(((x - a) * (c - a) + (y - b) * (d - b)) / (length * length), 0, 1);
+            const away = Math.hypot(a + share * (c - a) - x, b + share * (d - b) - y);
+            if (away < best[0]) best = [away, this.arc[i] + share * length];
+        }
+        return best[1];
+    }
+}
+
 const LANE = 3.5; // width of a lane
 const FAR = 78; // where ways begin and end
 const BOX = 8; // where straight ways end before a crossing
@@ -71,55 +126,51 @@ const walk = arm => [onArm(arm, WALK, 16), onArm(arm, WALK, -16)];
 // `ways` of others by name, `first`: whose way goes before the ego's (all others go after it).
 const SITES = [
     {
-        id: "stop", name: "All-way stop", arms: ["N", "E", "S", "W"], control: "stop", from: "S",
-        turns: { left: "W", straight: "N", right: "E" }, turn: "left", speed: 8.5,
-        see: "Everybody stops, then goes. The blue car turns left and waits until no car that comes the other way, " +
-            "and nobody on foot, can be where it will be.",
-        ways: { N: across("N", "S"), E: across("E", "W"), W: across("W", "E") },
-        first: ["N", "E", "walk"],
-        walks: true,
-        crowd: [
-            someone("car", "N", 27, 8, 1.0), someone("car", "W", 2, 8, 1.2), someone("pedestrian", "walk", 4, 1.4),
-            someone("car", "E", 14, 8, 6.5),
-        ],
-    },
-    {
         id: "yield", name: "Two-way stop", arms: ["N", "E", "S", "W"], control: "yield", from: "S",
-        turns: { left: "W", straight: "N", right: "E" }, turn: "straight", speed: 8.5,
-        see: "The road from west to east does not stop. The blue car goes when it is certain to be across before " +
-            "the earliest arrival of everybody on it.",
+        turns: { left: "W", straight: "N", right: "E" }, turn: "straight", start: 48, speed: 8.5,
+        see: "The road from west to east does not stop. The policy would like to cross early; the shield lets it go when it is " +
+            "certain to be across before the earliest arrival of everybody on that road.",
         ways: { E: across("E", "W"), W: across("W", "E"), N: across("N", "S") },
         first: ["E", "W"],
         walks: false,
         crowd: [
-            someone("car", "W", 20, 10), someone("lorry", "E", 8, 9), someone("car", "E", 50, 10),
-            someone("car", "W", 0, 10),
+            someone("car", "W", 12, 8), someone("lorry", "E", 14, 7), someone("car", "E", 29, 10), someone("car", "W", 48, 7),
+        ],
+    },
+    {
+        id: "stop", name: "All-way stop", arms: ["N", "E", "S", "W"], control: "stop", from: "S",
+        turns: { left: "W", straight: "N", right: "E" }, turn: "straight", start: 48, speed: 8.5,
+        see: "Everybody stops, then goes. Cede trusts nobody to wait: it goes when no car, and nobody on foot, can be where " +
+            "it will be. Tick the rule of an all-way stop below, and it takes its turn.",
+        ways: { N: across("N", "S"), E: across("E", "W"), W: across("W", "E") },
+        first: ["N", "E", "walk"],
+        walks: true,
+        crowd: [
+            someone("car", "N", 46, 9, 0.1), someone("car", "W", 41, 11, 2.8), someone("pedestrian", "walk", 7, 1.4),
         ],
     },
     {
         id: "ring", name: "Roundabout", arms: ["N", "E", "S", "W"], control: "ring", from: "S",
-        turns: { left: "W", straight: "N", right: "E" }, turn: "straight", speed: 8,
-        see: "Those in the ring go first. The blue car enters where the gap is large enough for the one behind to stop, " +
-            "whatever happens ahead.",
+        turns: { left: "W", straight: "N", right: "E" }, turn: "straight", start: 38, speed: 7.5,
+        see: "Those in the ring go first. Cede enters where the one behind has room to stop, whatever Cede has to do " +
+            "ahead of it.",
         ways: { W: around("W", "E"), N: around("N", "E"), E: around("E", "S"), WN: around("W", "N") },
         first: ["W", "N", "E", "WN"],
         walks: false,
         crowd: [
-            someone("car", "W", 36, 7), someone("car", "N", 40, 7), someone("car", "E", 40, 7),
-            someone("lorry", "WN", 0, 7),
+            someone("car", "W", 14, 8), someone("car", "N", 47, 6), someone("car", "E", 23, 10), someone("lorry", "WN", 56, 10),
         ],
     },
     {
         id: "tee", name: "T-junction", arms: ["E", "S", "W"], control: "yield", from: "S",
-        turns: { left: "W", right: "E" }, turn: "left", speed: 8,
-        see: "The blue car comes from the side road and turns left, across one lane and into another, in which it must " +
-            "not be in anybody's way.",
+        turns: { left: "W", right: "E" }, turn: "left", start: 48, speed: 8,
+        see: "Cede comes from the side road and turns left, across one lane and into another, past somebody on foot. " +
+            "Watch the plan: it never ends in anybody's way.",
         ways: { W: across("W", "E"), E: across("E", "W"), ES: across("E", "S") },
         first: ["W", "E", "ES", "walk"],
         walks: true,
         crowd: [
-            someone("car", "W", 24, 9), someone("car", "E", 6, 9), someone("car", "ES", 40, 7),
-            someone("pedestrian", "walk", 6, 1.4),
+            someone("car", "W", 6, 9), someone("car", "E", 27, 9), someone("car", "ES", 5, 10), someone("pedestrian", "walk", 7, 1.4),
         ],
     },
 ];
@@ -137,5 +188,5 @@ function layout(site, turn) {
         for (const kind of kinds) paths.push({ ...KINDS[kind], name, kind, points });
     }
     const first = paths.map(path => site.first.includes(path.name));
-    return { paths, first, to };
+    return { paths, first, to, ways: paths.map(path => new Polyline(path.points)) };
 }

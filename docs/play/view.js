@@ -2,6 +2,7 @@
 // Draws the junction and what the controller knows and plans, on a canvas.
 
 const ROAD = LANE; // half of a road's width
+const SHOWN = 54; // metres of the smaller side of the picture
 const KERB = 1.7; // width of the pavement
 
 // Colours are those of the style sheet, so that light and dark are decided there alone.
@@ -10,59 +11,6 @@ function palette() {
     const names = ["grass", "grass-2", "pavement", "road", "paint", "ego", "ego-ink", "other", "other-ink", "walker",
         "zone", "reach", "plan", "warn", "stop", "canvas-ink", "canvas-paper", "glass", "tree"];
     return Object.fromEntries(names.map(name => [name, style.getPropertyValue(`--${name}`).trim()]));
-}
-
-// A polyline by arc length.
-class Polyline {
-    constructor(points) {
-        this.points = points;
-        this.arc = [0];
-        for (let i = 1; i < points.length; i++) {
-            const [[a, b], [c, d]] = [points[i - 1], points[i]];
-            this.arc.push(this.arc[i - 1] + Math.hypot(c - a, d - b));
-        }
-        this.length = this.arc[this.arc.length - 1];
-    }
-
-    at(s) {
-        const i = this.segment(s);
-        const share = (limit(s, 0, this.length) - this.arc[i]) / (this.arc[i + 1] - this.arc[i]);
-        const [[a, b], [c, d]] = [this.points[i], this.points[i + 1]];
-        return [a + share * (c - a), b + share * (d - b)];
-    }
-
-    // Direction at s, as an angle.
-    heading(s) {
-        const i = this.segment(s);
-        const [[a, b], [c, d]] = [this.points[i], this.points[i + 1]];
-        return Math.atan2(d - b, c - a);
-    }
-
-    segment(s) {
-        let i = 0;
-        while (i < this.points.length - 2 && this.arc[i + 1] < s) i++;
-        return i;
-    }
-
-    // The points from one arc length to another.
-    slice(from, to) {
-        const [a, b] = [limit(from, 0, this.length), limit(to, 0, this.length)];
-        const inside = this.points.filter((_, i) => this.arc[i] > a && this.arc[i] < b);
-        return [this.at(a), ...inside, this.at(b)];
-    }
-
-    // The arc length of the nearest place to a point.
-    project([x, y]) {
-        let best = [Infinity, 0];
-        for (let i = 0; i + 1 < this.points.length; i++) {
-            const [[a, b], [c, d]] = [this.points[i], this.points[i + 1]];
-            const length = this.arc[i + 1] - this.arc[i];
-            const share = limit(((x - a) * (c - a) + (y - b) * (d - b)) / (length * length), 0, 1);
-            const away = Math.hypot(a + share * (c - a) - x, b + share * (d - b) - y);
-            if (away < best[0]) best = [away, this.arc[i] + share * length];
-        }
-        return best[1];
-    }
 }
 
 class View {
@@ -80,7 +28,7 @@ class View {
         [this.width, this.height] = [clientWidth, clientHeight];
         this.canvas.width = this.ground.width = Math.round(clientWidth * this.ratio);
         this.canvas.height = this.ground.height = Math.round(clientHeight * this.ratio);
-        this.scale = Math.min(clientWidth / 50, clientHeight / 50);
+        this.scale = Math.min(clientWidth / SHOWN, clientHeight / SHOWN);
         this.colours = palette();
         this.site = null;
     }
@@ -96,16 +44,8 @@ class View {
         context.setTransform(k, 0, 0, -k, this.ratio * this.width / 2, this.ratio * this.height / 2);
     }
 
-    tracks(world) {
-        if (this.layout !== world.layout) {
-            this.layout = world.layout;
-            this.ways = world.layout.paths.map(path => new Polyline(path.points));
-        }
-        return this.ways;
-    }
-
     draw(world, selected, pointer) {
-        const ways = this.tracks(world);
+        const { ways } = world;
         if (this.site !== world.site) {
             this.site = world.site;
             this.drawGround(world.site);
@@ -195,7 +135,8 @@ class View {
             } else {
                 c.moveTo(...at(half + radius, half));
                 c.quadraticCurveTo(...at(half, half), ...at(half, half + radius));
-                c.lineTo(...at(half, half));
+                // A little of the roads as well, so that no seam is seen.
+                [[half - 1, half + radius], [half - 1, half - 1], [half + radius, half - 1]].forEach(([a, b]) => c.lineTo(...at(a, b)));
             }
             c.fill();
         });
@@ -413,7 +354,7 @@ class View {
             const reach = world.reach(other);
             const way = ways[other.path];
             c.font = `600 ${small ? 10 : 11}px system-ui, sans-serif`;
-            if (reach && other.seat === selected || reach && other.number === about) {
+            if (reach && (about === null ? other.seat === selected : other.number === about)) {
                 reach.forEach(([, to], i) => {
                     if (to + other.length / 2 >= way.length) return;
                     this.label(c, way, to + other.length / 2, `${REACH_TIMES[i]} s`);
