@@ -50,9 +50,9 @@ function automatic(world, other) {
     return Math.min(wished, ...occupied(world, other).map(zone => stopBefore(other, zone.egoFrom)));
 }
 
-// The crossing zones with the ego in which the ego is.
-function occupied({ ego, meetings }, other) {
-    return meetings[other.path][0].filter(zone => zone.kind === 0 && ego.s > zone.otherFrom && ego.s < zone.otherTo);
+// The crossing zones with the ego in which the ego is, or not `before` metres from them.
+function occupied({ ego, meetings }, other, before = 0) {
+    return meetings[other.path][0].filter(zone => zone.kind === 0 && ego.s > zone.otherFrom - before && ego.s < zone.otherTo);
 }
 
 // The acceleration (m/s²) that keeps a gap (m) to whoever is ahead, if there is one: the intelligent driver model

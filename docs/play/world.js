@@ -157,9 +157,12 @@ class World {
             this.controller.forget(other.number);
         }
         [other.s, other.speed] = [end, 0];
-        // Nobody comes into sight of an ego that is in its way already: no plan could be kept (duty U3 of the manual).
-        const blocked = this.crowd.some(one => one.way === other.way && one.s < 20) || occupied(this, other).length > 0;
-        if (blocked || this.time < other.left + AWAY) return other;
+        const blocked = this.crowd.some(one => one.way === other.way && one.s < 20);
+        // Nobody comes into sight of an ego that is, or has planned to be, in its way, or only just out of it: duty U3 of
+        // the manual.
+        const { go, margin } = this.decision;
+        const surprised = go !== 0 || margin < 0.02 || occupied(this, other, 0.5).length > 0;
+        if (blocked || surprised || this.time < other.left + AWAY) return other;
         return this.join({ ...this.site.crowd[other.seat], seat: other.seat, s: 0, speed: other.wanted });
     }
 
