@@ -66,7 +66,7 @@ class Page {
             this.wanted = { ...this.wanted, precedence: false };
             this.accepted = { ...this.accepted, precedence: false };
         }
-        const turns = Object.keys(this.site.turns).map(turn => [turn, `Cede goes ${turn === "straight" ? "straight on" : turn}`]);
+        const turns = Object.keys(this.site.turns).map(turn => [turn, turn === "straight" ? "straight on" : turn]);
         segments("turns", turns, this.turn, turn => {
             this.turn = turn;
             this.restart();

@@ -78,13 +78,13 @@ function verdict(decision) {
     const [first, ...more] = decision.text.split("; ");
     const said = {
         policy: `What the policy proposes is safe: ${signed(decision.proposal)} m/s².`,
-        shielded: sentence(first.replace("shielded: ", "")),
+        shielded: sentence(first.replace("shielded: ", "")) + (/near as -/.test(first) ? " Below 0 it is ahead by then." : ""),
         fallback: sentence(first.replace("fallback: ", "")),
     }[decision.cause];
     return [said, ...more.map(sentence)].join(" ");
 }
 
-const sentence = text => text.charAt(0).toUpperCase() + text.slice(1) + ".";
+const sentence = text => text.charAt(0).toUpperCase() + text.slice(1).replace(/-(?=[0-9])/g, "−") + ".";
 const signed = value => (value < 0 ? "−" : "+") + Math.abs(value).toFixed(1);
 
 // Writes only what has changed: the page is not laid out anew in every frame.
@@ -98,9 +98,8 @@ class Panel {
         this.marks = ["proposal", "command"].map(className => make("u", { className }));
         this.bars = Array.from({ length: GRID }, () => make("i"));
         element("options").append(...this.bars, ...this.marks);
-        this.lines = [];
         this.history = element("history");
-        this.spoken = 0;
+        this.spoken = -Infinity; // when a screen reader was last told
     }
 
     show(world) {
@@ -145,6 +144,10 @@ class Panel {
         const key = [world.ended?.how, decision.cause, decision.about, decision.breach, decision.text.split("; ")[1]].join();
         if (key === this.key) return;
         this.key = key;
+        if (performance.now() > this.spoken + 4000) {
+            write("spoken", `${element("cause").textContent}. ${words}`);
+            this.spoken = performance.now();
+        }
         const time = make("time", { textContent: `${world.time.toFixed(1)} s` });
         const line = make("li", {}, time, make("span", { textContent: words }));
         line.dataset.tone = tone;

@@ -131,13 +131,13 @@ class View {
                 c.quadraticCurveTo(...at(base + 1.5, half), ...at(base - 2.5, half + 4.5));
                 c.lineTo(...at(half + 4.5, base - 2.5));
                 c.quadraticCurveTo(...at(half, base + 1.5), ...at(half, base + 8));
-                c.lineTo(...at(half, half));
             } else {
                 c.moveTo(...at(half + radius, half));
                 c.quadraticCurveTo(...at(half, half), ...at(half, half + radius));
-                // A little of the roads as well, so that no seam is seen.
-                [[half - 1, half + radius], [half - 1, half - 1], [half + radius, half - 1]].forEach(([a, b]) => c.lineTo(...at(a, b)));
             }
+            // A little of the roads as well, so that no seam is seen.
+            const far = ring ? base + 8 : half + radius;
+            [[half - 1, far], [half - 1, half - 1], [far, half - 1]].forEach(([a, b]) => c.lineTo(...at(a, b)));
             c.fill();
         });
     }
@@ -387,19 +387,20 @@ class View {
         const margin = 14;
         if (x < -margin || x > this.width + margin || y < -margin || y > this.height + margin) return;
         const text = other.hidden ? `${other.number} hidden` : `${other.number}`;
-        this.plate(c, x, y, text, paper, this.colours["canvas-paper"]);
+        this.plate(c, x, y - (other.kind === "pedestrian" ? 17 : 0), text, paper, this.colours["canvas-paper"]);
     }
 
     drawStopLabel(c, world, way) {
         const { planned, decision, ego } = world;
-        const [x, y] = this.pixels(ego.pose);
         c.font = "700 11px system-ui, sans-serif";
-        this.plate(c, x, y, "Cede", this.colours.ego, this.colours["ego-ink"]);
+        const [x, y] = this.pixels(ego.pose);
+        const beside = ego.width / 2 * this.scale + 24;
+        this.plate(c, x - ego.pose[3] * beside, y - ego.pose[2] * beside, "Cede", this.colours.ego, this.colours["ego-ink"]);
         if (!planned || planned.stop + ego.length / 2 > way.length - 1) return;
         const s = planned.stop + ego.length / 2;
         const [[a, b], angle] = [way.at(s), way.heading(s)];
         const [px, py] = this.pixels([a + Math.sin(angle) * 4.2, b - Math.cos(angle) * 4.2]);
-        const text = decision.go > 0 ? `go ${(decision.go * PERIOD).toFixed(1)} s, then stop` : "can stop here";
+        const text = decision.go > 0 ? `go ${(decision.go * PERIOD).toFixed(1)} s, then stops here` : "stops here";
         c.font = "600 11px system-ui, sans-serif";
         const half = c.measureText(text).width / 2 + 8;
         const inside = limit(px, half, this.width - half);
