@@ -37,7 +37,7 @@ function towards(other, most, least) {
 
 // As people drive: up to a speed, behind whoever is ahead, in turn where ways meet, and not over a line that stops.
 function automatic(world, other) {
-    if (other.kind === "pedestrian") return 2 * (other.wanted - other.speed);
+    if (other.kind === "pedestrian") return walkOn(world, other);
     let wished = Math.min(1.8 * (1 - (other.speed / other.wanted) ** 4), lineAhead(world, other));
     for (const one of world.crowd) {
         if (one === other || one.left !== null) continue;
@@ -48,6 +48,14 @@ function automatic(world, other) {
         }
     }
     return Math.min(wished, ...occupied(world, other).map(zone => stopBefore(other, zone.egoFrom)));
+}
+
+// On foot: at a pace, but not into a vehicle.
+function walkOn(world, other) {
+    const standing = world.crowd.flatMap(one => world.meetings[other.path][one.path].filter(({ otherFrom, otherTo }) =>
+        one.s > otherFrom && one.s < otherTo));
+    const zones = [...standing, ...occupied(world, other)];
+    return Math.min(2 * (other.wanted - other.speed), ...zones.map(zone => stopBefore(other, zone.egoFrom)));
 }
 
 // The crossing zones with the ego in which the ego is, or not `before` metres from them.

@@ -73,15 +73,15 @@ function truths(change) {
 
 const CAUSES = { policy: "Policy", shielded: "Shield", fallback: "No guarantee" };
 
-// The decision in words.
+// The decision in words: what is decided and why, and what is wrong.
 function verdict(decision) {
     const [first, ...more] = decision.text.split("; ");
-    const said = {
+    const why = {
         policy: `What the policy proposes is safe: ${signed(decision.proposal)} m/s².`,
         shielded: sentence(first.replace("shielded: ", "")) + (/near as -/.test(first) ? " Below 0 it is ahead by then." : ""),
         fallback: sentence(first.replace("fallback: ", "")),
     }[decision.cause];
-    return [said, ...more.map(sentence)].join(" ");
+    return { why, wrong: more.map(sentence).join(" ") };
 }
 
 const sentence = text => text.charAt(0).toUpperCase() + text.slice(1).replace(/-(?=[0-9])/g, "−") + ".";
@@ -105,18 +105,19 @@ class Panel {
     show(world) {
         const { decision, ego } = world;
         if (!decision) return;
-        const words = world.ended ? ending(world) : verdict(decision);
+        const { why, wrong } = world.ended ? { why: ending(world), wrong: "" } : verdict(decision);
         const tone = world.ended?.how === "collision" ? "fallback" : decision.cause;
         element("verdict").dataset.tone = tone;
         write("cause", world.ended?.how === "collision" ? "Collision" : CAUSES[decision.cause]);
-        write("reason", words);
+        write("reason", why);
+        write("breach", wrong);
         write("margin", decision.noPlan ? "none" : `${decision.margin > 99 ? "> 99" : decision.margin.toFixed(1)} m`);
         write("plan", decision.go === null ? "none" : decision.go === 0 ? "brake" : `go ${(decision.go * PERIOD).toFixed(1)} s`);
         write("speed", `${(ego.speed * 3.6).toFixed(0)} km/h`);
         write("command", `command ${signed(decision.acceleration)} m/s²`);
         this.showSvo(decision.svo);
         this.showOptions(decision);
-        this.tell(world, words, tone);
+        this.tell(world, `${why} ${wrong}`, wrong ? "fallback" : tone);
     }
 
     showSvo(svo) {

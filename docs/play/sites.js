@@ -146,7 +146,7 @@ const SITES = [
         first: ["N", "E", "walk"],
         walks: true,
         crowd: [
-            someone("car", "N", 46, 9, 0.1), someone("car", "W", 41, 11, 2.8), someone("pedestrian", "walk", 7, 1.4),
+            someone("car", "N", 57, 6, 0.1), someone("car", "W", 41, 10, 3.5), someone("pedestrian", "walk", 7, 1.4),
         ],
     },
     {

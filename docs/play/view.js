@@ -2,7 +2,6 @@
 // Draws the junction and what the controller knows and plans, on a canvas.
 
 const ROAD = LANE; // half of a road's width
-const SHOWN = 54; // metres of the smaller side of the picture
 const KERB = 1.7; // width of the pavement
 
 // Colours are those of the style sheet, so that light and dark are decided there alone.
@@ -28,7 +27,8 @@ class View {
         [this.width, this.height] = [clientWidth, clientHeight];
         this.canvas.width = this.ground.width = Math.round(clientWidth * this.ratio);
         this.canvas.height = this.ground.height = Math.round(clientHeight * this.ratio);
-        this.scale = Math.min(clientWidth / SHOWN, clientHeight / SHOWN);
+        this.small = clientWidth < 500;
+        this.scale = Math.min(clientWidth, clientHeight) / (this.small ? 42 : 54);
         this.colours = palette();
         this.site = null;
     }
@@ -349,11 +349,10 @@ class View {
         c.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
         c.textAlign = "center";
         c.textBaseline = "middle";
-        const small = this.scale < 9;
         for (const other of world.crowd) {
             const reach = world.reach(other);
             const way = ways[other.path];
-            c.font = `600 ${small ? 10 : 11}px system-ui, sans-serif`;
+            c.font = "600 11px system-ui, sans-serif";
             if (reach && (about === null ? other.seat === selected : other.number === about)) {
                 reach.forEach(([, to], i) => {
                     if (to + other.length / 2 >= way.length) return;
@@ -396,7 +395,8 @@ class View {
         const [x, y] = this.pixels(ego.pose);
         const beside = ego.width / 2 * this.scale + 24;
         this.plate(c, x - ego.pose[3] * beside, y - ego.pose[2] * beside, "Cede", this.colours.ego, this.colours["ego-ink"]);
-        if (!planned || planned.stop + ego.length / 2 > way.length - 1) return;
+        const rests = ego.speed < 0.5 && decision.go === 0;
+        if (!planned || rests || planned.stop + ego.length / 2 > way.length - 1) return;
         const s = planned.stop + ego.length / 2;
         const [[a, b], angle] = [way.at(s), way.heading(s)];
         const [px, py] = this.pixels([a + Math.sin(angle) * 4.2, b - Math.cos(angle) * 4.2]);

@@ -1,16 +1,11 @@
-// Asks the page's controller what the host was asked, and compares every bit of every decision: golden.js GOLDEN.bin
-// [module.js]. The file is that of the bare-metal lane (firmware/cortex-m/golden).
+// Asks the page's controller what the host was asked, and compares every bit of every decision. The file is that of the
+// bare-metal lane (firmware/cortex-m/golden). In Node: golden.js GOLDEN.bin [module.js]; in a browser: golden(…).
 "use strict";
-const fs = require("fs");
-const { load } = require("./page.js");
 
-const POINTS = 8, ROUTE = 4 + 2 * POINTS, VEHICLE = 7, OTHERS = 8, QUESTION = 1 + VEHICLE * (1 + OTHERS);
-
-async function main([golden, file]) {
-    const { compileController, Controller, Call, ANSWER } = load(file);
+// How many decisions there are, and how many of them differ from the host's.
+async function golden({ compileController, Controller, Call, ANSWER }, words) {
+    const POINTS = 8, ROUTE = 4 + 2 * POINTS, VEHICLE = 7, OTHERS = 8, QUESTION = 1 + VEHICLE * (1 + OTHERS);
     const module = await compileController();
-    const bytes = fs.readFileSync(golden);
-    const words = new Uint32Array(bytes.buffer, bytes.byteOffset, bytes.length / 4);
     let at = 0, steps = 0, different = 0;
     while (at < words.length) {
         const [others, count] = words.subarray(at, at + 2);
@@ -42,8 +37,17 @@ async function main([golden, file]) {
             different += expected.some((word, i) => word !== controller.words[i]) ? 1 : 0;
         }
     }
-    console.log(`decisions: ${steps}, different from the host's: ${different}`);
-    return steps > 0 && different === 0;
+    return { steps, different };
 }
 
-main(process.argv.slice(2)).then(good => process.exit(good ? 0 : 1));
+const told = ({ steps, different }) => `decisions: ${steps}, different from the host's: ${different}`;
+
+if (typeof require !== "undefined") {
+    const [file, module] = process.argv.slice(2);
+    const bytes = require("fs").readFileSync(file);
+    const words = new Uint32Array(bytes.buffer, bytes.byteOffset, bytes.length / 4);
+    golden(require("./page.js").load(module), words).then(result => {
+        console.log(told(result));
+        process.exit(result.steps > 0 && result.different === 0 ? 0 : 1);
+    });
+}

@@ -200,9 +200,11 @@ impl<'j> Desk<'j> {
                 s: ego.s,
                 v: ego.speed,
             },
-            in_effect: self.last.map_or([-limits.braking, limits.acceleration], |last| {
-                [last.acceleration; 2]
-            }),
+            in_effect: self
+                .last
+                .map_or([-limits.braking, limits.acceleration], |last| {
+                    [last.acceleration; 2]
+                }),
             acceleration: decision.acceleration,
             plan: decision.plan,
         });
@@ -215,8 +217,7 @@ impl<'j> Desk<'j> {
             return;
         };
         let (contract, ego) = (&self.contract, self.contract.ego());
-        let departure =
-            margin::departure(contract, last.ego.v, last.in_effect, last.acceleration);
+        let departure = margin::departure(contract, last.ego.v, last.in_effect, last.acceleration);
         let rest = if plan.go == 0 {
             departure.braking.rest(ego.braking)
         } else {
@@ -300,8 +301,7 @@ fn named(words: &mut Input<'_>, out: &mut Output) -> Result<(), Refusal> {
 }
 
 fn gap(words: &mut Input<'_>, out: &mut Output) -> Result<(), Refusal> {
-    let mut rectangle =
-        || Ok::<_, Refusal>(OrientedBox::new(words.pose()?, words.footprint()?));
+    let mut rectangle = || Ok::<_, Refusal>(OrientedBox::new(words.pose()?, words.footprint()?));
     let (first, second) = (rectangle()?, rectangle()?);
     out.number(first.separation(&second));
     Ok(())

@@ -90,7 +90,9 @@ impl Output {
         self.word(u32::try_from(text.len()).unwrap_or(0));
         for bytes in text.as_bytes().chunks(4) {
             let mut word = [0; 4];
-            word.iter_mut().zip(bytes).for_each(|(to, from)| *to = *from);
+            word.iter_mut()
+                .zip(bytes)
+                .for_each(|(to, from)| *to = *from);
             self.word(u32::from_le_bytes(word));
         }
     }
