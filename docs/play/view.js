@@ -390,6 +390,8 @@ class View {
     }
 
     drawStopLabel(c, world, way) {
+        // In a small picture these would hide more than they say.
+        if (this.small) return;
         const { planned, decision, ego } = world;
         c.font = "700 11px system-ui, sans-serif";
         const [x, y] = this.pixels(ego.pose);
