@@ -110,8 +110,9 @@ class Controller {
         return { stop: this.numbers[0], places: [...this.numbers.subarray(1, count)] };
     }
 
-    zones(path) {
-        const count = this.call(Call.zones, this.put([{ word: path }]));
+    // Where a vehicle of `path` and one of `other` can touch.
+    zones(path, other) {
+        const count = this.call(Call.zones, this.put([{ word: path }, { word: other }]));
         const zones = [];
         for (let at = 0; at < count; at += 7) {
             const [egoFrom, egoTo, otherFrom, otherTo, leadFrom, leadTo] = this.numbers.subarray(at + 1, at + 7);

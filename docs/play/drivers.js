@@ -123,14 +123,3 @@ function lineAhead(world, other) {
     if (!crossed && !occupied(world, other).length || other.waited + TICK < other.stops) other.waited += TICK;
     return -2;
 }
-
-// How each two paths meet, asked of the controller: zones of path i, as the ego's, with path j.
-function meetings(module, paths) {
-    return paths.map((mine, i) => paths.map((theirs, j) => {
-        if (i === j || mine.name === theirs.name) return [];
-        const controller = new Controller(module);
-        [mine, theirs].forEach(path => controller.path({ ...path, kind: path.word }));
-        controller.build();
-        return controller.zones(1);
-    }));
-}

@@ -62,8 +62,10 @@ class World {
         controller.setContract(this.contract);
         controller.enter();
         this.lines = this.layout.paths.map((_, i) => controller.line(i));
-        this.zones = this.layout.paths.map((_, i) => i === 0 ? [] : controller.zones(i));
-        this.meetings ??= meetings(this.module, this.layout.paths);
+        // How each two ways meet; those of one way in several classes do not.
+        this.meetings = this.layout.paths.map(({ name }, i) => this.layout.paths.map((other, j) =>
+            name === other.name ? [] : controller.zones(i, j)));
+        this.zones = this.meetings[0];
         this.ego = { path: 0, ...KINDS.car, s: this.site.start, speed: this.site.speed, acceleration: 0, name: "ego" };
         this.place(this.ego);
         this.commands = [{ from: -1, acceleration: 0 }];

@@ -27,8 +27,8 @@ pub enum Call {
     Plan = 7,
     /// The last decision, or why the last call was refused: the number of bytes, and UTF-8.
     Text = 8,
-    /// `path`: the zones with the ego: `kind, ego from, to, other from, to, lead from, to` for each. Kind: 0 crossing,
-    /// 1 merging, 2 following.
+    /// `path, other`: their zones, path's vehicle as the ego: `kind, ego from, to, other from, to, lead from, to` for
+    /// each. Kind: 0 crossing, 1 merging, 2 following.
     Zones = 9,
     /// `s, speed, time`: the arc lengths between which an other is `time` later: `from, to`.
     Reach = 10,

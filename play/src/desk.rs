@@ -15,8 +15,10 @@ use core::cell::OnceCell;
 use core::fmt::Write;
 use heapless::{String, Vec};
 
-/// A junction of the page: the ego's path, and 15 others.
-pub type Junction = cede_controller::Junction<PATHS, POINTS, 1>;
+/// A junction of the page: the ego's path, and 15 others. Every path can be entered, so that the page's other drivers can
+/// ask how their ways meet.
+pub type Junction = cede_controller::Junction<PATHS, POINTS, PATHS>;
+type Builder = JunctionBuilder<PATHS, POINTS, PATHS>;
 
 /// Where the junction of a desk is once it is built.
 pub type Place = OnceCell<Junction>;
@@ -37,7 +39,7 @@ const EGO: PathId = PathId::new(0);
 #[derive(Debug)]
 pub struct Desk<'j> {
     place: &'j Place,
-    builder: JunctionBuilder<PATHS, POINTS, 1>,
+    builder: Builder,
     contract: Contract,
     approach: Option<Approach<'j, 'static>>,
     last: Option<Last>,
@@ -60,7 +62,7 @@ impl<'j> Desk<'j> {
     pub fn new(place: &'j Place) -> Self {
         Self {
             place,
-            builder: JunctionBuilder::new(),
+            builder: Builder::new(),
             contract: Contract::WORST_CASE,
             approach: None,
             last: None,
@@ -135,7 +137,7 @@ impl<'j> Desk<'j> {
         Ok(self.unbuilt()?.right_of_way(first, second)?)
     }
 
-    fn unbuilt(&mut self) -> Result<&mut JunctionBuilder<PATHS, POINTS, 1>, Refusal> {
+    fn unbuilt(&mut self) -> Result<&mut Builder, Refusal> {
         if self.place.get().is_some() {
             return Err(Refusal::Built);
         }
@@ -245,7 +247,8 @@ impl<'j> Desk<'j> {
     }
 
     fn zones(&self, words: &mut Input<'_>, out: &mut Output) -> Result<(), Refusal> {
-        let conflict = self.junction()?.conflict(EGO, words.path()?);
+        let (mine, theirs) = (words.path()?, words.path()?);
+        let conflict = self.junction()?.conflict(mine, theirs);
         for zone in conflict.ok_or(Refusal::NotBuilt)?.zones() {
             out.word(match zone.kind {
                 ConflictKind::Merging => 1,
