@@ -172,7 +172,7 @@ fi
 
 cat >"$new/env" <<END
 export PATH=${tools:+$(printf %q "$tools/bin"):}\$PATH
-cortex_compiler=$(printf %q "$compiler")
-cortex_flags=$(printf %q "$flags")
+target_compiler=$(printf %q "$compiler")
+target_flags=$(printf %q "$flags")
 END
 mv "$new/env" "$build/env"

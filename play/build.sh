@@ -14,8 +14,8 @@ source "$build/env"
 unset RUSTFLAGS
 linker=$(rustc --print sysroot)/lib/rustlib/$(rustc --print host-tuple)/bin/rust-lld
 export CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER=$linker
-export CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS="--remap-path-prefix=$PWD=cede -C link-arg=-zstack-size=262144 $cortex_flags"
-[ -z "$cortex_compiler" ] || export RUSTC=$cortex_compiler
+export CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS="--remap-path-prefix=$PWD=cede -C link-arg=-zstack-size=262144 $target_flags"
+[ -z "$target_compiler" ] || export RUSTC=$target_compiler
 cargo rustc --quiet --locked --release --manifest-path play/Cargo.toml --target-dir "$build/target" --target $target \
     --lib --crate-type cdylib
 module=$build/target/$target/release/cede_play.wasm

@@ -6,7 +6,6 @@ const WAIT = { through: 1.4, collision: 5 }; // s of the clock on the wall until
 
 // An error is told on the page's root, where a test looks for it.
 window.addEventListener("error", event => fail(event.message));
-window.addEventListener("unhandledrejection", event => fail(String(event.reason)));
 function fail(what) {
     document.documentElement.dataset.error = what;
     element("verdict").dataset.tone = "fallback";
@@ -122,7 +121,7 @@ class Page {
 
     showBroken() {
         const untrue = TRUTHS.filter(([name]) => this.truth[name]).map(([, words]) => words.toLowerCase());
-        const hidden = this.world.crowd.filter(other => other.hidden);
+        const hidden = this.world.crowd.filter(other => other.hidden && other.left === null);
         if (hidden.length) untrue.push(`${hidden.map(other => other.number).join(", ")} hidden`);
         element("broken").hidden = untrue.length === 0;
         write("broken", `Contract broken: ${untrue.join("; ")}`);
@@ -295,4 +294,4 @@ async function start() {
     requestAnimationFrame(frame);
     document.documentElement.dataset.status = "ready";
 }
-start();
+start().catch(error => fail(String(error)));

@@ -63,6 +63,7 @@ class View {
         if (pointer) this.drawGoal(c, ways, pointer);
         crowd.forEach(other => this.drawOther(c, other, other.seat === selected, other.number === about));
         this.drawVehicle(c, world.ego, this.colours.ego, world.ego.acceleration < -0.3);
+        if (world.ended?.how === "collision") this.drawHit(c, world.ego, world.ended.with);
         this.drawLabels(c, world, ways, selected, about);
     }
 
@@ -321,6 +322,22 @@ class View {
         c.fillRect(a - 0.25, -b + 0.15, 0.25, 0.4);
         c.fillRect(a - 0.25, b - 0.55, 0.25, 0.4);
         c.restore();
+    }
+
+    // A star between the two.
+    drawHit(c, ego, other) {
+        const [x, y] = [(ego.pose[0] + other.pose[0]) / 2, (ego.pose[1] + other.pose[1]) / 2];
+        c.fillStyle = this.colours.zone;
+        c.strokeStyle = this.colours["canvas-paper"];
+        c.lineWidth = 0.25;
+        c.beginPath();
+        for (let i = 0; i < 24; i++) {
+            const [angle, radius] = [i * Math.PI / 12, i % 2 ? 1.3 : 2.6];
+            c.lineTo(x + radius * Math.cos(angle), y + radius * Math.sin(angle));
+        }
+        c.closePath();
+        c.fill();
+        c.stroke();
     }
 
     drawWalker(c, { pose: [x, y, dx, dy], s }) {

@@ -43,7 +43,7 @@ class World {
     constructor(module, site, turn, contract, truth, record) {
         Object.assign(this, { module, site, turn, contract, truth, record });
         this.random = generator(7);
-        this.numbers = 0;
+        this.rounds = 0;
         this.begin();
     }
 
@@ -69,7 +69,11 @@ class World {
         this.ego = { path: 0, ...KINDS.car, s: this.site.start, speed: this.site.speed, acceleration: 0, name: "ego" };
         this.place(this.ego);
         this.commands = [{ from: -1, acceleration: 0 }];
-        this.crowd = this.site.crowd.map((one, i) => this.join({ ...one, seat: i }));
+        this.numbers = 0;
+        // The first round is the one of the links to a moment; then everybody begins somewhat elsewhere.
+        const shift = () => this.rounds === 0 ? 0 : 6 * (this.random() - 0.5);
+        this.crowd = this.site.crowd.map((one, i) => this.join({ ...one, seat: i, s: Math.max(one.s + shift(), 0) }));
+        this.rounds += 1;
         this.decision = null;
         this.planned = null;
         this.history = [];
@@ -86,7 +90,7 @@ class World {
         const path = this.layout.paths.findIndex(path => path.name === way && path.kind === kind);
         const other = {
             ...KINDS[kind], kind, way, path, s, speed, stops, seat, wanted: kind === "pedestrian" ? 1.4 : Math.max(speed, 6),
-            acceleration: 0, waited: 0, number: ++this.numbers % 1000, mode: "auto", hidden: false, seen: null, left: null,
+            acceleration: 0, waited: 0, number: ++this.numbers, mode: "auto", hidden: false, seen: null, left: null,
         };
         this.place(other);
         return other;
