@@ -30,6 +30,7 @@ echo "== the controller of the page, on the host"
 if "${cargo[@]}" clippy --version >/dev/null 2>&1; then
     "${cargo[@]}" clippy --locked --manifest-path $workspace --all-targets -- -D warnings
 fi
+"${cargo[@]}" test --locked --release --manifest-path $workspace
 "${cargo[@]}" build --locked --release --manifest-path $workspace --examples
 "${cargo[@]}" run --locked --release --manifest-path firmware/cortex-m/Cargo.toml --target-dir "$build/golden" \
     -p cede-golden -- "$build"

@@ -5,7 +5,7 @@
 const fs = require("fs");
 const { load } = require("./page.js");
 
-const ROUNDS = 4; // for each way through each junction and each thing that is untrue
+const HELD = 12, BROKEN = 4; // rounds of each way through each junction, while the contract holds and while it does not
 const SECONDS = 25;
 
 // What must be said at least once while it is untrue.
@@ -25,7 +25,7 @@ async function main([out, file]) {
     const named = new Controller(module).named(0);
     const random = generator(1);
     const modes = ["auto", "go", "hold", "brake", "go"];
-    const tally = { rounds: 0, decisions: 0, shielded: 0, said: {}, hits: {}, wrong: [] };
+    const tally = { held: 0, broken: 0, decisions: 0, shielded: 0, said: {}, hits: {}, wrong: [] };
 
     // A round in which everybody else changes its mind every second or so.
     function round(world, name) {
@@ -38,7 +38,7 @@ async function main([out, file]) {
             if (name && text.includes(SAID[name])) tally.said[name] = (tally.said[name] ?? 0) + 1;
             if (!name && /deviated|exceeds|no plan/.test(text)) tally.wrong.push(`${world.site.id} ${world.turn} at ${world.time.toFixed(1)} s: ${text}`);
         }
-        tally.rounds += 1;
+        tally[name ? "broken" : "held"] += 1;
         if (world.ended?.how !== "collision") return;
         if (name) tally.hits[name] = (tally.hits[name] ?? 0) + 1;
         else tally.wrong.push(`${world.site.id} ${world.turn}: hit by ${world.ended.with.way} at ${world.time.toFixed(1)} s`);
@@ -54,7 +54,7 @@ async function main([out, file]) {
                 const world = new World(module, site, turn, contract, truth, record);
                 round(world, name);
                 world.record = undefined;
-                for (let i = 1; i < ROUNDS; i++) {
+                for (let i = 1; i < (name ? BROKEN : HELD); i++) {
                     world.begin();
                     round(world, name);
                 }
@@ -63,8 +63,9 @@ async function main([out, file]) {
     }
 
     fs.writeFileSync(out, Buffer.concat(chunks.map(words => Buffer.from(words.buffer))));
-    console.log(`rounds: ${tally.rounds}, decisions: ${tally.decisions}, shielded: ${tally.shielded}; ` +
-        `said while untrue: ${JSON.stringify(tally.said)}, hits then: ${JSON.stringify(tally.hits)}`);
+    console.log(`rounds within the contract: ${tally.held}, wrong: ${tally.wrong.length}; rounds outside: ${tally.broken}, ` +
+        `hits: ${JSON.stringify(tally.hits)}, decisions with a word about it: ${JSON.stringify(tally.said)}; ` +
+        `decisions: ${tally.decisions}, shielded: ${tally.shielded}`);
     for (const what of tally.wrong.slice(0, 9)) console.error(`while the contract held: ${what}`);
     const unsaid = Object.keys(SAID).filter(name => !tally.said[name]);
     for (const name of unsaid) console.error(`${name}: nothing was said of it`);
