@@ -28,7 +28,6 @@ class View {
         this.canvas.width = this.ground.width = Math.round(clientWidth * this.ratio);
         this.canvas.height = this.ground.height = Math.round(clientHeight * this.ratio);
         this.small = clientWidth < 500;
-        this.scale = Math.min(clientWidth, clientHeight) / (this.small ? 42 : 54);
         this.colours = palette();
         this.site = null;
     }
@@ -48,6 +47,8 @@ class View {
         const { ways } = world;
         if (this.site !== world.site) {
             this.site = world.site;
+            const shown = this.small && world.site.control !== "ring" ? 42 : 54;
+            this.scale = Math.min(this.width, this.height) / shown;
             this.drawGround(world.site);
         }
         const c = this.context;
@@ -173,9 +174,9 @@ class View {
         const through = site.control === "yield";
         for (const arm of site.arms) {
             const minor = site.control === "stop" || (through && (arm === "N" || arm === "S"));
-            const edge = ring ? 20 : through && !minor ? 0 : 9.5;
+            const edge = ring ? 20 : through && !minor ? 0 : 5;
             this.line(c, arm, [[edge, 0], [100, 0]], 0.16, through && !minor ? [3, 3] : []);
-            if (minor) this.line(c, arm, [[9.3, 0], [9.3, ROAD - 0.25]], 0.5);
+            if (minor) this.line(c, arm, [[4.4, 0.1], [4.4, ROAD + 0.4]], 0.5, through ? [0.6, 0.4] : []);
             if (ring) this.line(c, arm, [[18.6, 0.3], [18.6, ROAD + 0.4]], 0.45, [0.6, 0.4]);
         }
     }
@@ -366,30 +367,27 @@ class View {
         c.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
         c.textAlign = "center";
         c.textBaseline = "middle";
-        for (const other of world.crowd) {
-            const reach = world.reach(other);
-            const way = ways[other.path];
-            c.font = "600 11px system-ui, sans-serif";
-            if (reach && (about === null ? other.seat === selected : other.number === about)) {
-                reach.forEach(([, to], i) => {
-                    if (to + other.length / 2 >= way.length) return;
-                    this.label(c, way, to + other.length / 2, `${REACH_TIMES[i]} s`);
-                });
-            }
-            this.badge(c, other, other.number === about ? this.colours.zone : this.colours["canvas-ink"]);
-        }
+        c.font = "600 11px system-ui, sans-serif";
+        this.taken = [];
+        world.crowd.forEach(other => this.badge(c, other, other.number === about ? this.colours.zone : this.colours["canvas-ink"]));
         this.drawStopLabel(c, world, ways[0]);
+        const named = world.crowd.find(other => about === null ? other.seat === selected : other.number === about);
+        const reach = named && world.reach(named);
+        if (reach) reach.forEach(([, to], i) => this.label(c, ways[named.path], to + named.length / 2, `${REACH_TIMES[i]} s`));
     }
 
-    // Beside the way, to its right.
+    // Beside the way, to its right, if there is room.
     label(c, way, s, text) {
+        if (s >= way.length) return;
         const [[x, y], angle] = [way.at(s), way.heading(s)];
         const [px, py] = this.pixels([x + Math.sin(angle) * 2.2, y - Math.cos(angle) * 2.2]);
-        this.plate(c, px, py, text, this.colours["canvas-paper"], this.colours["canvas-ink"]);
+        const free = this.taken.every(([a, b, width]) => Math.abs(a - px) > (width + 30) / 2 || Math.abs(b - py) > 17);
+        if (free) this.plate(c, px, py, text, this.colours["canvas-paper"], this.colours["canvas-ink"]);
     }
 
     plate(c, x, y, text, paper, ink) {
         const width = c.measureText(text).width + 8;
+        this.taken.push([x, y, width]);
         c.fillStyle = paper;
         c.beginPath();
         c.roundRect(x - width / 2, y - 8, width, 16, 4);
@@ -410,7 +408,6 @@ class View {
         // In a small picture these would hide more than they say.
         if (this.small) return;
         const { planned, decision, ego } = world;
-        c.font = "700 11px system-ui, sans-serif";
         const [x, y] = this.pixels(ego.pose);
         const beside = ego.width / 2 * this.scale + 24;
         this.plate(c, x - ego.pose[3] * beside, y - ego.pose[2] * beside, "Cede", this.colours.ego, this.colours["ego-ink"]);
@@ -420,7 +417,6 @@ class View {
         const [[a, b], angle] = [way.at(s), way.heading(s)];
         const [px, py] = this.pixels([a + Math.sin(angle) * 4.2, b - Math.cos(angle) * 4.2]);
         const text = decision.go > 0 ? `go ${(decision.go * PERIOD).toFixed(1)} s, then stops here` : "stops here";
-        c.font = "600 11px system-ui, sans-serif";
         const half = c.measureText(text).width / 2 + 8;
         const inside = limit(px, half, this.width - half);
         this.plate(c, inside, limit(py, 12, this.height - 12), text, this.colours.plan, this.colours["ego-ink"]);
