@@ -92,11 +92,11 @@ fn a_contract_that_is_refused_is_named_and_the_one_before_it_stays() {
     let numbers = ask(&mut desk, Call::Named, &[1]).unwrap();
     assert!(ask(&mut desk, Call::Contract, &numbers).is_some());
     let mut wrong = numbers;
-    wrong[0] = 0.2_f32.to_bits();
+    wrong[1] = 20.0_f32.to_bits();
     assert!(ask(&mut desk, Call::Contract, &wrong).is_none());
     let why = said(&mut desk);
     assert!(
-        why.starts_with("latency = 0.2 is outside [0, 0.1]"),
+        why.starts_with("position_error = 20 is outside [0, 10]"),
         "{why}"
     );
     assert!(ask(&mut desk, Call::Enter, &[]).is_some());
