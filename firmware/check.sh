@@ -30,13 +30,13 @@ fi
 
 linker=$(rustc --print sysroot)/lib/rustlib/$(rustc --print host-tuple)/bin/rust-lld
 export CARGO_TARGET_THUMBV7EM_NONE_EABIHF_LINKER=$linker
-export CARGO_TARGET_THUMBV7EM_NONE_EABIHF_RUSTFLAGS="-C link-arg=-Tlink.x $cortex_flags"
+export CARGO_TARGET_THUMBV7EM_NONE_EABIHF_RUSTFLAGS="-C link-arg=-Tlink.x $target_flags"
 
 # image GOLDEN_FOLDER [cargo options]: builds the image and prints where it is.
 image() {
     local golden=$1
     shift
-    [ -z "$cortex_compiler" ] || export RUSTC=$cortex_compiler
+    [ -z "$target_compiler" ] || export RUSTC=$target_compiler
     CEDE_GOLDEN=$golden "${cargo[@]}" build --locked --release --manifest-path $workspace \
         --target-dir "$build/target" --target $target -p cede-cortex-m "$@" >&2 || return
     echo "$build/target/$target/release/cede-cortex-m"

@@ -1,17 +1,23 @@
 #!/usr/bin/env bash
-# Sets up what the Cortex-M lane needs, in .build/cortex-m, and leaves the rest of the machine as it is.
+# Sets up what a lane needs that builds for another target, and leaves the rest of the machine as it is:
+# setup.sh cortex-m (the default) or setup.sh wasm, in .build/cortex-m or .build/wasm.
 #
 # What is already installed is used: rustup's target, QEMU, the GNU tools. What is missing comes from
 # Debian's packages (root on Debian; downloaded and unpacked, not installed): no toolchain is fetched.
-# At the end .build/cortex-m/env holds the variables that firmware/check.sh reads.
+# At the end .build/LANE/env holds the variables that firmware/check.sh or play/build.sh reads.
 #
 # Whatever is unpacked or built appears under its final name only when it is whole, so an interrupted
 # set-up is begun again; the name holds the packages' versions.
 set -euo pipefail
 shopt -s inherit_errexit nullglob
 cd "$(dirname "$0")/.."
-build=$PWD/.build/cortex-m
-target=thumbv7em-none-eabihf
+lane=${1:-cortex-m}
+build=$PWD/.build/$lane
+case $lane in
+    cortex-m) target=thumbv7em-none-eabihf core_options=(--cfg thumb) ;;
+    wasm) target=wasm32-unknown-unknown core_options=() ;;
+    *) echo "usage: firmware/setup.sh [cortex-m|wasm]" >&2 && exit 2 ;;
+esac
 rust_version=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)
 libraries=x86_64-linux-gnu # Debian's folder of the host's libraries
 
@@ -32,9 +38,11 @@ trap 'rm -rf "$new"' EXIT
 
 packages=()
 has_target || packages+=(rustc-web rust-web-src)
-command -v qemu-system-arm >/dev/null || packages+=(qemu-system-arm)
-command -v arm-none-eabi-nm >/dev/null || packages+=(binutils-arm-none-eabi)
-command -v arm-none-eabi-gcc >/dev/null || packages+=(gcc-arm-none-eabi) # for the example in C; without a C library
+if [ $lane = cortex-m ]; then
+    command -v qemu-system-arm >/dev/null || packages+=(qemu-system-arm)
+    command -v arm-none-eabi-nm >/dev/null || packages+=(binutils-arm-none-eabi)
+    command -v arm-none-eabi-gcc >/dev/null || packages+=(gcc-arm-none-eabi) # for the example in C; without a C library
+fi
 
 # An index of the set-up's own: the machine's may be stale, or another program may be writing it.
 apt=(-o "Dir::State::lists=$new/lists" -o "Dir::Cache=$new/cache" -o APT::Sandbox::User=root
@@ -43,8 +51,8 @@ apt=(-o "Dir::State::lists=$new/lists" -o "Dir::Cache=$new/cache" -o APT::Sandbo
 # fetch: downloads the packages, checks their versions, unpacks them as $build/tools+NAME=VERSION+...
 fetch() {
     command -v apt-get >/dev/null && [ "$(id -u)" = 0 ] || fail "${packages[*]} are missing, and only root on" \
-        "Debian can unpack them here; install QEMU for Arm, GNU binutils and GCC for arm-none-eabi," \
-        "and the target with: rustup target add $target"
+        "Debian can unpack them here; the target comes with: rustup target add $target;" \
+        "cortex-m needs QEMU for Arm, GNU binutils and GCC for arm-none-eabi, too"
     echo "fetching ${packages[*]}"
     mkdir -p "$new/lists/partial" "$new/cache/archives/partial" "$new/tools/bin"
     apt-get -qq "${apt[@]}" update >/dev/null
@@ -134,7 +142,7 @@ build_core() {
     for feature in compiler-builtins default mem unstable-intrinsics; do
         features+=(--cfg "feature=\"$feature\"")
     done
-    core --crate-name compiler_builtins "${features[@]}" --cfg thumb --cfg f16_enabled --cfg f128_enabled \
+    core --crate-name compiler_builtins "${features[@]}" "${core_options[@]}" --cfg f16_enabled --cfg f128_enabled \
         --cfg intrinsics_enabled --cfg arch_enabled --cfg optimizations_enabled \
         "$library/compiler-builtins/compiler-builtins/src/lib.rs"
     compiles "$new/sysroot" || fail "the core that was built is of no use: $(cat "$new/log")"
@@ -164,7 +172,7 @@ fi
 
 cat >"$new/env" <<END
 export PATH=${tools:+$(printf %q "$tools/bin"):}\$PATH
-cortex_compiler=$(printf %q "$compiler")
-cortex_flags=$(printf %q "$flags")
+target_compiler=$(printf %q "$compiler")
+target_flags=$(printf %q "$flags")
 END
 mv "$new/env" "$build/env"

@@ -5,6 +5,7 @@ mod demo;
 mod evaluate;
 mod export;
 mod import;
+mod play;
 mod replay;
 mod reproduce;
 mod train;
@@ -26,6 +27,8 @@ pub(crate) enum Command {
     Evaluate(evaluate::Args),
     /// Show one encounter of a recording, as numbers and as an animated page
     Replay(replay::Args),
+    /// Drive other cars around the controller's in a browser, and try to hit it
+    Play(play::Args),
     /// Train a policy
     Train(train::Args),
     /// Train and judge the rows of the paper's table
@@ -48,6 +51,7 @@ impl Command {
             Self::Evaluate(args) => evaluate::run(&args),
             Self::Export(args) => export::run(&args),
             Self::Import(args) => import::run(&args),
+            Self::Play(args) => play::run(&args),
             Self::Replay(args) => replay::run(&args),
             Self::Train(args) => train::run(&args),
             Self::Reproduce(args) => reproduce::run(&args),

@@ -48,7 +48,7 @@ fi
 echo "the examples print the same with and without sanitizers: $(wc -l <"$build/plain/crossing.txt") lines"
 
 # library FOLDER [cargo's options]: builds it for the target.
-library() { bare_compiler=$cortex_compiler bare_flags=$cortex_flags $capi/bare.sh $target "$build/$1" "${@:2}" >/dev/null; }
+library() { bare_compiler=$target_compiler bare_flags=$target_flags $capi/bare.sh $target "$build/$1" "${@:2}" >/dev/null; }
 nm() { arm-none-eabi-nm -C "$build/$1/cede.o"; }
 undefined() { nm "$1" | grep ' U '; }
 panics() { nm "$1" | grep -E 'panic|core::fmt'; }
