@@ -9,7 +9,7 @@ const Call = {
 // Numbers of a contract in the controller's order.
 const CONTRACT_FIELDS = [
     "latency", "positionError", "speedError", "egoMaxSpeed", "egoAcceleration", "egoGo", "egoBraking", "egoEmergency",
-    "otherMaxSpeed", "otherAcceleration", "otherBraking", "followerReaction", "followerBraking",
+    "otherMaxSpeed", "otherAcceleration", "otherBraking", "followerReaction", "followerBraking", "egoLag",
 ];
 
 // Words of a decision, and accelerations of the shield's grid.

@@ -28,14 +28,15 @@ function chosen(id, value) {
 // The contract's sliders: field, words, unit, range, step, and which condition of docs/manual.md it is.
 const SLIDERS = [
     ["egoBraking", "Its brakes achieve", "m/s²", 1.5, 7, 0.5],
-    ["latency", "A command takes effect within", "s", 0, 0.1, 0.01],
+    ["latency", "A command takes effect within", "s", 0, 0.3, 0.02],
+    ["egoLag", "Its drivetrain and brakes lag by at most", "s", 0, 0.3, 0.05],
     ["otherAcceleration", "Others accelerate at most at", "m/s²", 1, 5, 0.5],
     ["otherMaxSpeed", "Others drive at most", "m/s", 10, 20, 1],
     ["positionError", "Sensors err by at most", "m", 0, 1, 0.1],
 ];
 
 const TRUTHS = [
-    ["late", "Commands act late", "after twice the stated time"],
+    ["late", "Commands act late", "latency and lag are twice what is stated"],
     ["weak", "Brakes are weak", "half of what is stated"],
     ["wild", "Others exceed their bounds", "twice the acceleration, half as much again the speed; they ram from behind as well"],
     ["blurred", "Sensors are worse", "they err by a metre more than is stated"],

@@ -69,6 +69,7 @@ class World {
         this.ego = { path: 0, ...KINDS.car, s: this.site.start, speed: this.site.speed, acceleration: 0, name: "ego" };
         this.place(this.ego);
         this.commands = [{ from: -1, acceleration: 0 }];
+        this.felt = 0;
         this.numbers = 0;
         // The first round is the one of the links to a moment; then everybody begins somewhat elsewhere.
         const shift = () => this.rounds === 0 ? 0 : 6 * (this.random() - 0.5);
@@ -147,11 +148,17 @@ class World {
         if (this.history.length > 400) this.history.shift();
     }
 
-    // What the ego does now: the last command that has taken effect, as far as the brakes can.
+    // What the ego does in this tick: it follows the last command that has taken effect, as far as the brakes can, with a
+    // first-order lag. The mean over the tick.
     actuated() {
         while (this.commands.length > 1 && this.commands[1].from <= this.time + EXACT) this.commands.shift();
         const { acceleration } = this.commands[0];
-        return this.truth.weak && acceleration < 0 ? acceleration / 2 : acceleration;
+        const wanted = this.truth.weak && acceleration < 0 ? acceleration / 2 : acceleration;
+        const lag = this.contract.egoLag * (this.truth.late ? 2 : 1);
+        if (lag === 0) return this.felt = wanted;
+        const [away, left] = [this.felt - wanted, Math.exp(-TICK / lag)];
+        this.felt = wanted + away * left;
+        return wanted + away * (1 - left) * lag / TICK;
     }
 
     // The same one, or who comes after it when it has left.

@@ -48,7 +48,8 @@ async function main([out, file]) {
         for (const site of SITES) {
             for (const turn of Object.keys(site.turns)) {
                 const contract = { ...named, egoMaxSpeed: 12, egoEmergency: 7, egoBraking: 3 + Math.floor(random() * 4),
-                    positionError: random() < 0.5 ? 0 : 0.2 };
+                    positionError: random() < 0.5 ? 0 : 0.2, latency: random() < 0.5 ? 0.1 : 0.24,
+                    egoLag: random() < 0.5 ? 0 : 0.2 };
                 const truth = { ...TRUTH, ...(name && { [name]: true }) };
                 // One round of each is enough to be repeated on the host.
                 const world = new World(module, site, turn, contract, truth, record);

@@ -21,6 +21,7 @@ pub(crate) fn write(contract: &Contract, out: &mut Output) {
         other.braking,
         follower.reaction,
         follower.braking,
+        ego.lag,
     ]);
     out.word(contract.precedence().is_some().into());
 }
@@ -41,6 +42,7 @@ pub(crate) fn read(words: &mut Input<'_>) -> Result<Contract, Refusal> {
         .other_braking(words.number()?)
         .follower_reaction(words.number()?)
         .follower_braking(words.number()?)
+        .ego_lag(words.number()?)
         .precedence((words.word()? != 0).then_some(Precedence::ALL_WAY_STOP));
     Ok(builder.build()?)
 }

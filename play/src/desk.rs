@@ -5,6 +5,7 @@ use crate::contract;
 use crate::refusal::Refusal;
 use crate::words::{Input, Output};
 use cede_controller::kinematics::{State, advance};
+use cede_controller::shield::actuation::Inherited;
 use cede_controller::shield::choice::{GRID, grid};
 use cede_controller::shield::margin;
 use cede_controller::{
@@ -32,6 +33,9 @@ const TRACKS: usize = 16;
 /// Most periods of a plan that are told.
 const PERIODS: usize = 300;
 
+/// Most commands that may be in effect at once.
+const FLIGHTS: usize = 10;
+
 /// The ego's path.
 const EGO: PathId = PathId::new(0);
 
@@ -43,6 +47,8 @@ pub struct Desk<'j> {
     contract: Contract,
     approach: Option<Approach<'j, 'static>>,
     last: Option<Last>,
+    /// The commands that were given last, the newest at the end.
+    commands: Vec<f32, FLIGHTS>,
     text: String<512>,
 }
 
@@ -66,6 +72,7 @@ impl<'j> Desk<'j> {
             contract: Contract::WORST_CASE,
             approach: None,
             last: None,
+            commands: Vec::new(),
             text: String::new(),
         }
     }
@@ -168,6 +175,7 @@ impl<'j> Desk<'j> {
         let drive = Drive::new(policy, self.contract, Part::Left);
         self.approach = Some(drive.enter(self.junction()?, EGO)?);
         self.last = None;
+        self.commands.clear();
         Ok(())
     }
 
@@ -196,22 +204,37 @@ impl<'j> Desk<'j> {
             out.word((judged.cause == Cause::Policy).into());
             out.number(judged.margin);
         }
-        let limits = self.contract.ego();
         self.last = Some(Last {
             ego: State {
                 s: ego.s,
                 v: ego.speed,
             },
-            in_effect: self
-                .last
-                .map_or([-limits.braking, limits.acceleration], |last| {
-                    [last.acceleration; 2]
-                }),
+            in_effect: self.in_effect(),
             acceleration: decision.acceleration,
             plan: decision.plan,
         });
+        if self.commands.is_full() {
+            self.commands.remove(0);
+        }
+        let _ = self.commands.push(decision.acceleration);
         self.say(format_args!("{decision}"));
         Ok(())
+    }
+
+    /// The least and the largest of the commands that may be in effect until one that is given now certainly is; before
+    /// there are as many, anything may be.
+    fn in_effect(&self) -> [f32; 2] {
+        let contract = &self.contract;
+        // Truncates; a command that is given exactly the response ago is followed.
+        let flying = 1 + (contract.response() / contract.period() - 1.0e-3).max(0.0) as usize;
+        let Some(from) = self.commands.len().checked_sub(flying) else {
+            return [-contract.ego().emergency, contract.ego().acceleration];
+        };
+        let flying = self.commands.get(from..).unwrap_or_default().iter();
+        flying.fold(
+            [f32::INFINITY, f32::NEG_INFINITY],
+            |[least, most], &command| [least.min(command), most.max(command)],
+        )
     }
 
     fn plan(&self, out: &mut Output) {
@@ -219,9 +242,10 @@ impl<'j> Desk<'j> {
             return;
         };
         let (contract, ego) = (&self.contract, self.contract.ego());
-        let departure = margin::departure(contract, last.ego.v, last.in_effect, last.acceleration);
+        let inherited = Inherited::all(contract, last.in_effect);
+        let departure = margin::departure(contract, last.ego.v, &inherited, last.acceleration);
         let rest = if plan.go == 0 {
-            departure.braking.rest(ego.braking)
+            departure.braking.rest(margin::braking(contract))
         } else {
             let time = f32::from(plan.go) * contract.period();
             margin::rest(contract, departure.most, time)
