@@ -38,7 +38,7 @@ pub fn unlimited<R: Real>(contract: &Contract) -> R {
 }
 
 /// By how much (m/s²) a reduced `go` may slow the ego: it holds the speed against what nobody commands, or gives way to it.
-fn fade<R: Real>(contract: &Contract) -> R {
+pub(super) fn fade<R: Real>(contract: &Contract) -> R {
     let ego = &contract.ego;
     let disturbance = R::of(ego.disturbance);
     (disturbance + disturbance) / (R::of(1.0) - R::of(ego.gain))

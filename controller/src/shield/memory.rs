@@ -7,7 +7,7 @@ use super::own::Own;
 use super::plan::Plan;
 use super::reach::Reach;
 use crate::instant::{Instant, micros};
-use crate::junction::zone::FAR;
+use crate::junction::zone::{FAR, Span};
 use crate::observation::Vehicle;
 
 /// What is left of the plan that was verified last.
@@ -20,12 +20,21 @@ struct Remembered {
     calls: u32,
 }
 
+/// Bounds on the ego's motion: what every observation says, carried on by what its commands lead to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Known {
+    /// Arc length in m.
+    s: Span,
+    /// Speed in m/s.
+    speed: Span,
+}
+
 /// The plan that was verified last, the commands given, and where the ego was.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Memory {
     remembered: Option<Remembered>,
     commands: Commands,
-    last: Option<(Vehicle, Instant)>,
+    last: Option<(Known, Instant)>,
     /// Arc length (m), at least, of the ego when it was seen last.
     least: f32,
     /// Calls since `last`.
@@ -111,24 +120,45 @@ impl Memory {
 
     /// Notes where the ego is at `now`; and whether its commands can have brought it there.
     pub(crate) fn note(&mut self, contract: &Contract, ego: &Vehicle, now: Instant) -> (Own, bool) {
-        let possible = self
-            .last
-            .is_none_or(|(last, at)| self.can(contract, &last, ego, now.seconds_since(at)));
+        let seen = Known {
+            s: around(ego.s, contract.position_error),
+            speed: around(ego.speed, contract.speed_error),
+        };
+        let expected = self.expected(contract, now);
+        let common = expected.map(|expected| both(contract, expected, seen));
+        let possible = !matches!(common, Some(None));
         let own = Own::new(contract, ego, if possible { self.least } else { -FAR });
-        self.last = Some((*ego, now));
+        self.last = Some((common.flatten().unwrap_or(seen), now));
         self.least = own.least;
         self.blind = 0;
         (own, possible)
     }
 
+    /// Where the ego may be at `now`, and how fast, by when it was seen before.
+    fn expected(&self, contract: &Contract, now: Instant) -> Option<Known> {
+        let (last, at) = self.last?;
+        let time = now.seconds_since(at);
+        let [least, most] = self.accelerations(contract);
+        let cap = margin::unlimited(contract);
+        let slow = Reach::start(last.speed.from).fading(cap, margin::fade::<f32>(contract) * time);
+        let least = slow.at_least(least, cap, time);
+        let most = Reach::start(last.speed.to).at_most(most, time);
+        Some(Known {
+            s: Span {
+                from: last.s.from + least.distance,
+                to: last.s.to + most.distance,
+            },
+            speed: Span {
+                from: least.speed,
+                to: most.speed,
+            },
+        })
+    }
+
     /// The ego's speed (m/s), at least, if it is not seen at `now`.
     pub(crate) fn least_speed(&self, contract: &Contract, now: Instant) -> f32 {
-        self.last.map_or(0.0, |(last, at)| {
-            let [least, _] = self.accelerations(contract);
-            let cap = margin::unlimited(contract);
-            let start = Reach::start(last.speed - contract.speed_error);
-            start.at_least(least, cap, now.seconds_since(at)).speed
-        })
+        self.expected(contract, now)
+            .map_or(0.0, |expected| expected.speed.from)
     }
 
     /// The ego's acceleration since it was seen last: least and most.
@@ -139,17 +169,28 @@ impl Memory {
             anything(contract)
         }
     }
+}
 
-    fn can(&self, contract: &Contract, last: &Vehicle, now: &Vehicle, time: f32) -> bool {
-        let [least, most] = self.accelerations(contract);
-        let error = contract.speed_error;
-        let cap = margin::unlimited(contract);
-        let least = Reach::start(last.speed - error).at_least(least, cap, time);
-        let most = Reach::start(last.speed + error).at_most(most, time);
-        let distance = 2.0 * contract.position_error + contract.slack;
-        let speed = error + contract.slack;
-        let way = now.s - last.s;
-        (least.distance - distance..=most.distance + distance).contains(&way)
-            && (least.speed - speed..=most.speed + speed).contains(&now.speed)
+fn around(value: f32, error: f32) -> Span {
+    Span {
+        from: value - error,
+        to: value + error,
     }
+}
+
+/// What is in both; nothing, if that is empty by more than rounding.
+fn both(contract: &Contract, expected: Known, seen: Known) -> Option<Known> {
+    let common = |a: Span, b: Span| {
+        let from = if a.from > b.from { a.from } else { b.from };
+        let to = if a.to < b.to { a.to } else { b.to };
+        let rounded = Span {
+            from: if from < to { from } else { to },
+            to: if from < to { to } else { from },
+        };
+        (from <= to + contract.slack).then_some(rounded)
+    };
+    Some(Known {
+        s: common(expected.s, seen.s)?,
+        speed: common(expected.speed, seen.speed)?,
+    })
 }

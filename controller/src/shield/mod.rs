@@ -568,8 +568,11 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         let contract = &self.contract;
         let command = allowed(&contract.ego, scene.most, next(contract, plan));
         let departure = R::departure(contract, scene.ego.speed, scene.inherited, command);
-        let holds =
-            |hazard: &Hazard| R::keeps(spare::<R>(contract, hazard, &departure, R::tail(plan)));
+        // Half of the slack is for what rounding has taken since the plan was verified.
+        let rounding = 0.5 * contract.slack;
+        let holds = |hazard: &Hazard| {
+            R::keeps(spare::<R>(contract, hazard, &departure, R::tail(plan)) + rounding)
+        };
         let watched = |hazard: &&Hazard| (all || hazard.suspect) && !hazard.is_closed();
         let watched_hold = scene.hazards.iter().filter(watched).all(holds);
         let context = (contract, self.way);
@@ -713,7 +716,7 @@ impl Scene<'_> {
     fn leaves<R: Rules>(&self, contract: &Contract) -> bool {
         let go = allowed(&contract.ego, self.most, contract.ego.go);
         let departure = R::departure(contract, self.ego.speed, self.inherited, go);
-        let rest = departure.braking.rest(margin::braking(contract));
+        let rest = R::rest(contract, departure.braking, 0.0);
         let outside = |passage| match passage {
             Passage::Before { distance, .. } => distance > 0.0,
             // It comes from behind.
@@ -733,7 +736,7 @@ impl Scene<'_> {
     /// Why `command` is refused: what stands in the way of the plan that goes farthest.
     fn reason<R: Rules>(&self, contract: &Contract, command: f32) -> Reason {
         let departure = R::departure(contract, self.ego.speed, self.inherited, command);
-        let mut needs = departure.braking.rest(margin::braking(contract));
+        let mut needs = R::rest(contract, departure.braking, 0.0);
         let mut stop = Reason::Stop {
             other: 0,
             available: 0.0,

@@ -30,7 +30,7 @@ pub(crate) fn best<R: Rules>(
     hazards: &Hazards,
     departure: &Departure<f32>,
 ) -> Verified {
-    let rest = departure.braking.rest(margin::braking(contract));
+    let rest = R::rest(contract, departure.braking, 0.0);
     let mut best = Verified {
         plan: Plan { go: 0 },
         margin: R::stops_short(contract, hazards.nearest_rest(), rest),
@@ -74,7 +74,7 @@ pub(crate) fn spare<R: Rules>(
     let rest = if plan.go > 0 {
         R::rest(contract, departure.most, time)
     } else {
-        departure.braking.rest(margin::braking(contract))
+        R::rest(contract, departure.braking, 0.0)
     };
     let stops = R::stops_short(contract, hazard.limit, rest);
     let (clears, speed) = margin::clearing(contract, departure.least, hazard.target);
