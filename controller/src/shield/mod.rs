@@ -568,8 +568,8 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         let contract = &self.contract;
         let command = allowed(&contract.ego, scene.most, next(contract, plan));
         let departure = R::departure(contract, scene.ego.speed, scene.inherited, command);
-        // Half of the slack is for what rounding has taken since the plan was verified.
-        let rounding = 0.5 * contract.slack;
+        // A part of the slack is for what rounding has taken since the plan was verified.
+        let rounding = 0.2 * contract.slack;
         let holds = |hazard: &Hazard| {
             R::keeps(spare::<R>(contract, hazard, &departure, R::tail(plan)) + rounding)
         };

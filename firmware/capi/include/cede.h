@@ -117,7 +117,7 @@
  * The version of this interface. A program compares it with cede_abi_version() once, at its start: it grows with every
  * change of a structure, a size, a number or the meaning of a function.
  */
-#define CEDE_ABI_VERSION 1
+#define CEDE_ABI_VERSION 2
 
 /**
  * Alignment of all objects in bytes.
@@ -325,6 +325,9 @@ enum cede_contract_field
     CEDE_CONTRACT_FIELD_PRECEDENCE_BRAKING = 17,
     CEDE_CONTRACT_FIELD_PRECEDENCE_PATIENCE = 18,
     CEDE_CONTRACT_FIELD_EGO_EMERGENCY = 19,
+    CEDE_CONTRACT_FIELD_EGO_LAG = 20,
+    CEDE_CONTRACT_FIELD_EGO_GAIN = 21,
+    CEDE_CONTRACT_FIELD_EGO_DISTURBANCE = 22,
     CEDE_CONTRACT_FIELD_OTHER = 255,
 };
 #ifndef __cplusplus
@@ -1074,11 +1077,12 @@ typedef struct cede_contract {
      */
     float period;
     /**
-     * A command takes effect within this time in s, in [0, period - 6 jitter].
+     * A command takes effect within this time in s, in [0, 10 period - 6 jitter].
      */
     float latency;
     /**
-     * How far (s) a call may be from the grid of periods, either way, in [0, period/8].
+     * How far (s) a call may be from the grid of periods, either way, in [0, 0.35 period]; with precedence up to
+     * period/8.
      */
     float jitter;
     /**
@@ -1098,21 +1102,35 @@ typedef struct cede_contract {
      */
     float ego_max_speed;
     /**
-     * Hardest acceleration that is commanded in m/s^2, in (0, other_acceleration].
+     * Hardest acceleration that is commanded in m/s^2; what it may lead to is in (0, other_acceleration].
      */
     float ego_acceleration;
     /**
-     * Acceleration that the ego achieves when it must clear a zone, in m/s^2, in [0.01, ego_acceleration].
+     * Acceleration that is commanded when the ego must clear a zone, in m/s^2, up to ego_acceleration; it leads to 0.01 at
+     * least.
      */
     float ego_go;
     /**
-     * Braking that the ego achieves, in m/s^2, in (0, other_braking]; the hardest that is commanded while there is a plan.
+     * Braking that plans command in m/s^2, the hardest while there is one; it leads to 0.01 at least and other_braking at
+     * most.
      */
     float ego_braking;
     /**
      * Braking that is commanded while no plan is safe, in m/s^2, in [ego_braking, other_braking]; 0: ego_braking.
      */
     float ego_emergency;
+    /**
+     * Time constant in s, at most, of the lag with which the ego's acceleration follows a command, in [0, 1].
+     */
+    float ego_lag;
+    /**
+     * By which share of a command the ego's acceleration may differ from it, in [0, 0.5].
+     */
+    float ego_gain;
+    /**
+     * Acceleration in m/s^2, either way, that nobody commands, in [0, 5]: g times the steepest grade, wind.
+     */
+    float ego_disturbance;
     /**
      * Highest speed of another in m/s, in (0, 100].
      */

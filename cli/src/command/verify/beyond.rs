@@ -12,7 +12,8 @@ const HELP: &str = "\
 Each cell is the percentage of encounters that end in a collision, and the mean speed of these in m/s, one vehicle
 relative to the other. The same encounters are driven without a guard, behind a plain rule that brakes if two times
 overlap, and behind the shield. `flagged` is the share of the shield's collisions before which it said that its
-contract is broken, its input wrong, or no plan safe.
+contract is broken, its input wrong, or no plan safe; `noticed` is the share of all encounters behind the shield in
+which it said so. A rule of precedence is left out of the contract: hostile others keep none.
 
 Exit code 1 if the shield collides within the contract.";
 
@@ -88,8 +89,14 @@ impl Beyond {
         let mut text = vec![
             format!("{n} encounters a cell; collisions in %, and their speed in m/s"),
             format!(
-                "{:<33} {:<8} {:>12} {:>12} {:>12} {:>8}",
-                "beyond the contract", "others", "no guard", "plain rule", "shield", "flagged"
+                "{:<33} {:<8} {:>12} {:>12} {:>12} {:>8} {:>8}",
+                "beyond the contract",
+                "others",
+                "no guard",
+                "plain rule",
+                "shield",
+                "flagged",
+                "noticed"
             ),
         ];
         text.extend(lines.iter().map(Line::text));
@@ -121,8 +128,14 @@ impl Line {
                 ..
             } => format!("{:.0} %", 100.0 * flagged as f64 / collisions as f64),
         };
+        let Count {
+            encounters,
+            noticed,
+            ..
+        } = self.counts[2];
+        let noticed = format!("{:.0} %", 100.0 * noticed as f64 / encounters.max(1) as f64);
         format!(
-            "{:<33} {:<8} {none:>12} {plain:>12} {shield:>12} {flagged:>8}",
+            "{:<33} {:<8} {none:>12} {plain:>12} {shield:>12} {flagged:>8} {noticed:>8}",
             self.row.name,
             self.temper()
         )
@@ -133,6 +146,7 @@ impl Line {
             let share = count.share();
             serde_json::json!({
                 "encounters": count.encounters, "collisions": count.collisions, "flagged": count.flagged,
+                "noticed": count.noticed,
                 "share": share.fraction(), "share_95": share.interval(), "impact_m_s": count.impact_speed(),
             })
         };

@@ -129,12 +129,14 @@ impl Encounter<'_> {
                     encounters: 1,
                     collisions: 1,
                     flagged: u64::from(self.flagged),
+                    noticed: u64::from(self.flagged),
                     impact: speed,
                 };
             }
         }
         Count {
             encounters: 1,
+            noticed: u64::from(self.flagged),
             ..Count::default()
         }
     }

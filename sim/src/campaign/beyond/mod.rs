@@ -52,6 +52,8 @@ pub struct Count {
     pub collisions: u64,
     /// Collisions before which the shield said that the contract is broken, that its input is wrong, or that it has no plan.
     pub flagged: u64,
+    /// Encounters in which it said so at any time.
+    pub noticed: u64,
     /// Sum of the speeds (m/s), one relative to the other, at which they collide.
     pub impact: f64,
 }
@@ -64,6 +66,7 @@ impl Count {
             encounters: self.encounters + other.encounters,
             collisions: self.collisions + other.collisions,
             flagged: self.flagged + other.flagged,
+            noticed: self.noticed + other.noticed,
             impact: self.impact + other.impact,
         }
     }
@@ -95,6 +98,10 @@ pub fn beyond(
     encounters: u64,
     seed: u64,
 ) -> Count {
+    // A hostile other keeps no rule of precedence.
+    let Ok(contract) = contract.to_builder().precedence(None).build() else {
+        return Count::default();
+    };
     let setup = Setup {
         contract,
         vehicles: 2,
