@@ -18,6 +18,7 @@ mod source;
 mod table;
 mod threads;
 mod training;
+mod verdict;
 
 use clap::Parser;
 use std::process::ExitCode;

@@ -125,6 +125,7 @@ impl Report {
     /// Writes the page.
     pub(crate) fn write(mut self, path: &Path) -> Result<(), Failure> {
         self.page.cases.retain(Case::was_driven);
+        self.page.verdict = crate::verdict::sentence(&self.page.rows).unwrap_or_default();
         let data = serde_json::to_string(&self.page)
             .map_err(|error| Failure::input(error, "report this as a bug"))?;
         // `</` would end the script element.

@@ -57,6 +57,58 @@ pub(crate) fn render(rows: &[TableRow], paper: bool) -> String {
     text
 }
 
+/// One row a driver for the first protocol of `rows`, without the shield beside behind it; Cede first, baselines after.
+pub(crate) fn compact(rows: &[TableRow]) -> String {
+    let Some(first) = rows.first() else {
+        return String::new();
+    };
+    let protocol = |row: &&TableRow| {
+        (&row.split, &row.mode, &row.until) == (&first.split, &first.mode, &first.until)
+    };
+    let same: Vec<&TableRow> = rows.iter().filter(protocol).collect();
+    let mut alone: Vec<&TableRow> = same
+        .iter()
+        .filter(|row| row.shield == "off")
+        .copied()
+        .collect();
+    alone.sort_by_key(|row| row.driver != "cede");
+    let mut table = Table::new();
+    table
+        .load_style(presets::ASCII_MARKDOWN)
+        .set_content_arrangement(ContentArrangement::Disabled)
+        .set_header([
+            "driver (without → with shield)",
+            "priority accuracy",
+            "length error",
+            "collisions",
+            "time-outs",
+        ]);
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    for row in alone {
+        let shielded = same
+            .iter()
+            .find(|it| it.driver == row.driver && it.shield != "off");
+        let both = |show: &dyn Fn(&TableRow) -> String| {
+            let behind = shielded.map_or_else(String::new, |it| show(it));
+            format!("{} → {behind}", show(row))
+        };
+        table.add_row([
+            row.driver.clone(),
+            both(&|it| percent(it.priority_accuracy)),
+            both(&|it| number(it.episode_length_error, 3, "")),
+            both(&|it| it.collisions.to_string()),
+            both(&|it| it.time_outs.to_string()),
+        ]);
+    }
+    let n = Count(first.encounters, "encounter");
+    format!(
+        "{}: {n}, {} mode, until {}\n{table}\n",
+        first.split, first.mode, first.until
+    )
+}
+
 fn block_of(row: &TableRow) -> (&str, &str, &str, &str) {
     (&row.split, &row.mode, &row.until, &row.shield)
 }

@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::judge::{ModeName, Plan, UntilName};
 use crate::report::Report;
 use crate::table;
+use crate::verdict;
 use cede_controller::Contract;
 use cede_data::{Dataset, Split};
 use cede_sim::driver::Baseline;
@@ -21,8 +22,8 @@ const SEED: u64 = 1;
 /// Runs the demo.
 pub(crate) fn run() -> Result<(), Failure> {
     let dataset = Dataset::synthetic(ENCOUNTERS, SEED);
-    println!(
-        "{} synthetic encounters; drivers that learn do so on the training split.\n",
+    eprintln!(
+        "driving {} synthetic encounters …",
         dataset.encounters.len()
     );
     let mut report = Report::new(&dataset, "cede");
@@ -40,10 +41,14 @@ pub(crate) fn run() -> Result<(), Failure> {
         };
         rows.extend(plan.judge(&dataset, |row, drives| report.add(row, drives))?);
     }
-    print!("{}", table::render(&rows, false));
+    println!(
+        "{}\nThe policy has seen synthetic traffic alone, of other seeds; `logistic` and `mean-speed` learn on the training split.\n",
+        verdict::sentence(&rows).unwrap_or_default()
+    );
+    println!("{}", table::compact(&rows));
     report.sweep(&dataset, Contract::WORST_CASE)?;
     let page = Path::new(REPORT);
     report.write(page)?;
-    println!("The report, with replays and charts: {REPORT}");
+    println!("Replays, charts and all measures: {REPORT}");
     Ok(())
 }

@@ -21,6 +21,8 @@ const MOST_DOTS: usize = 4000;
 /// The whole page.
 #[derive(Default, Serialize)]
 pub(super) struct Page {
+    /// What the page says, in a sentence; empty if there is nothing to compare.
+    pub(super) verdict: String,
     pub(super) subtitle: String,
     pub(super) provenance: String,
     /// Names of the drivers in the order of their colours.

@@ -11,21 +11,20 @@
 use super::contract::Contract;
 use crate::instant::{Instant, micros};
 use crate::real::Real;
-use heapless::Vec;
+use heapless::{Deque, Vec};
 
 /// Commands in flight at most: so many periods may the latency last.
 pub const FLIGHTS: usize = 10;
 
-/// What acts of it: the acceleration itself, every command in flight, the last one, and one part more where a period ends.
-const PARTS: usize = FLIGHTS + 3;
+/// What acts: every command in flight, the one before them, and the acceleration itself.
+const PARTS: usize = FLIGHTS + 2;
 
 /// Accelerations that may act on the ego until a command that is given now is certainly followed: what is inherited from
 /// before.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Inherited<R> {
-    parts: Vec<Part<R>, PARTS>,
-    /// When the last part ends, in s from now.
-    end: f32,
+    /// The last one first: bounds that hold until a time, in s from now.
+    parts: Vec<(f32, [R; 2]), PARTS>,
 }
 
 /// Accelerations that may act for some time.
@@ -43,48 +42,45 @@ impl<R: Real> Inherited<R> {
     /// Accelerations between `bounds` (m/s²) throughout the response.
     #[must_use]
     pub fn all(contract: &Contract, bounds: [R; 2]) -> Self {
-        let mut all = Self::new();
-        all.until(contract, contract.response(), bounds);
+        let mut all = Self { parts: Vec::new() };
+        all.from_the_end(contract.response(), bounds);
         all
     }
 
-    pub(super) const fn new() -> Self {
-        let parts = Vec::new();
-        Self { parts, end: 0.0 }
-    }
-
-    /// From the end of the last part until `end` (s from now), accelerations between `bounds` (m/s²). A part that the end of
-    /// the first period divides becomes two.
-    pub(super) fn until(&mut self, contract: &Contract, end: f32, bounds: [R; 2]) {
-        let period = contract.shortest_period();
-        if self.end < period && period < end {
-            self.push(period, bounds, false);
+    /// Until `end` (s from now), before all parts that are known, accelerations between `bounds` (m/s²).
+    fn from_the_end(&mut self, end: f32, bounds: [R; 2]) {
+        if end > 0.0 || end.is_nan() {
+            // `PARTS` are enough.
+            let _ = self.parts.push((end, bounds));
         }
-        self.push(end, bounds, self.end >= period);
     }
 
-    fn push(&mut self, end: f32, bounds: [R; 2], later: bool) {
-        let time = if self.end == 0.0 { end } else { end - self.end };
-        // `PARTS` are enough for every command in flight.
-        let _ = self.parts.push(Part {
-            time,
-            bounds,
-            later,
-        });
-        self.end = end;
+    /// The parts, one after the other. What the end of the first period divides is two.
+    pub fn parts(&self, contract: &Contract) -> impl Iterator<Item = Part<R>> {
+        let period = contract.shortest_period();
+        let (mut rest, mut from) = (self.parts.iter().rev().peekable(), 0.0);
+        core::iter::from_fn(move || {
+            let &&(end, bounds) = rest.peek()?;
+            let divided = from < period && period < end;
+            let to = if divided { period } else { end };
+            let part = Part {
+                time: if from == 0.0 { to } else { to - from },
+                bounds,
+                later: from >= period,
+            };
+            if !divided {
+                rest.next();
+            }
+            from = to;
+            Some(part)
+        })
     }
 
-    /// The parts, one after the other.
-    pub fn parts(&self) -> impl Iterator<Item = &Part<R>> {
-        self.parts.iter()
-    }
-
-    /// The least and the largest acceleration (m/s²) of all parts.
+    /// The least and the largest acceleration (m/s²) of all parts: those that act at first.
     #[must_use]
     pub fn bounds(&self) -> [R; 2] {
-        let mut parts = self.parts.iter().map(|part| part.bounds);
-        let first = parts.next().unwrap_or([R::of(0.0); 2]);
-        parts.fold(first, hull)
+        let first = self.parts.last();
+        first.map_or([R::of(0.0); 2], |(_, bounds)| *bounds)
     }
 }
 
@@ -131,10 +127,10 @@ pub fn hold<R: Real>(contract: &Contract, least: R) -> R {
 }
 
 /// The commands given, as far as they may still act.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(super) struct Commands {
-    /// In the order in which they were given; the last one is the one before the next.
-    flights: Vec<Flight, FLIGHTS>,
+    /// In the order in which they were given. The first one stands for all before it.
+    flights: Deque<Flight, { FLIGHTS + 1 }>,
     /// The accelerations that the ego may have had when the last one was given, its least and its largest (m/s²).
     had: [f32; 2],
 }
@@ -151,7 +147,7 @@ impl Commands {
     /// Nothing is known of what was commanded before.
     pub(super) const fn unknown() -> Self {
         Self {
-            flights: Vec::new(),
+            flights: Deque::new(),
             had: [0.0; 2],
         }
     }
@@ -161,50 +157,50 @@ impl Commands {
         self.had = self.has(contract, now);
         if self.flights.is_empty() {
             // Whatever was commanded before may act for as long as any command.
-            let _ = self.flights.push(Flight {
+            let _ = self.flights.push_back(Flight {
                 bounds: anything(contract),
                 given: Instant::default(),
             });
         }
-        let over = |next: &Flight| self.left(contract, next.given, now) == 0.0;
-        let gone = self
-            .flights
-            .iter()
-            .skip(1)
-            .take_while(|next| over(next))
-            .count();
-        for _ in 0..gone {
-            self.flights.remove(0);
-        }
         if self.flights.is_full() {
             self.join();
         }
-        let _ = self.flights.push(Flight {
+        let _ = self.flights.push_back(Flight {
             bounds: [weakest(contract, command), strongest(contract, command)],
             given: now,
         });
     }
 
-    /// Without room, the two oldest commands count as one that may be either.
+    /// The two oldest commands count as one that may be either.
     fn join(&mut self) {
-        let oldest = self.flights.remove(0);
-        if let Some(next) = self.flights.first_mut() {
+        let oldest = self.flights.pop_front();
+        if let (Some(oldest), Some(next)) = (oldest, self.flights.front_mut()) {
             next.bounds = hull(oldest.bounds, next.bounds);
         }
     }
 
-    /// Seconds from `now` until a command `given` before is certainly in effect.
-    fn left(&self, contract: &Contract, given: Instant, now: Instant) -> f32 {
-        let left = given.plus(micros(contract.latency)).since(now);
-        // A microsecond is how exact a latency is.
-        if left <= 1 { 0.0 } else { left as f32 * 1.0e-6 }
+    /// Of the commands given, from the last one back, until when (s from `now`) each may be in effect.
+    fn acting(&self, contract: &Contract, now: Instant, mut each: impl FnMut(f32, [f32; 2])) {
+        let mut end = contract.switching();
+        for flight in self.flights.iter().rev() {
+            each(end, flight.bounds);
+            let left = flight.given.plus(micros(contract.latency)).since(now);
+            // The one before it acts until it is in effect. A microsecond is how exact a latency is.
+            if left <= 1 {
+                return;
+            }
+            end = left as f32 * 1.0e-6;
+        }
     }
 
     /// Everything that may have been in effect since the last command was given, in m/s².
     fn in_effect(&self, contract: &Contract) -> [f32; 2] {
-        let mut flights = self.flights.iter().map(|flight| flight.bounds);
-        let first = flights.next().unwrap_or(anything(contract));
-        flights.fold(first, hull)
+        let Some(last) = self.flights.back() else {
+            return anything(contract);
+        };
+        let mut bounds = last.bounds;
+        self.acting(contract, last.given, |_, of| bounds = hull(bounds, of));
+        bounds
     }
 
     /// The accelerations that the ego may have had since the last command was given, in m/s².
@@ -219,7 +215,7 @@ impl Commands {
 
     /// The accelerations that the ego may have at `now`, in m/s².
     fn has(&self, contract: &Contract, now: Instant) -> [f32; 2] {
-        let Some(last) = self.flights.last() else {
+        let Some(last) = self.flights.back() else {
             return anything(contract);
         };
         let elapsed = now.seconds_since(last.given);
@@ -228,35 +224,16 @@ impl Commands {
 
     /// What acts until a command that is given at `now` is certainly followed.
     pub(super) fn inherited(&self, contract: &Contract, now: Instant) -> Inherited<f32> {
-        if self.flights.is_empty() {
+        let Some(last) = self.flights.back() else {
             return Inherited::all(contract, anything(contract));
-        }
-        let lag = contract.ego.lag;
-        let mut inherited = Inherited::new();
-        let mut add = |end: f32, bounds| {
-            if end > inherited.end {
-                inherited.until(contract, end, bounds);
-            }
         };
-        // Each command acts until the next one is certainly in effect, and the last one throughout.
-        let ends = |next: Option<&Flight>| match next {
-            Some(next) => self.left(contract, next.given, now),
-            None => contract.switching(),
-        };
-        let later = |i: usize| {
-            let on = self.flights.iter().enumerate().skip(i);
-            let on = on.filter(|(i, _)| ends(self.flights.get(i + 1)) > 0.0);
-            let mut on = on.map(|(_, flight)| flight.bounds);
-            let first = on.next().unwrap_or(anything(contract));
-            on.fold(first, hull)
-        };
-        add(lag, hull(self.has(contract, now), later(0)));
-        for i in 0..self.flights.len() {
-            let end = ends(self.flights.get(i + 1));
-            if end > 0.0 {
-                add(if lag == 0.0 { end } else { end + lag }, later(i));
-            }
-        }
+        let (lag, mut bounds) = (contract.ego.lag, last.bounds);
+        let mut inherited = Inherited { parts: Vec::new() };
+        self.acting(contract, now, |end, of| {
+            bounds = hull(bounds, of);
+            inherited.from_the_end(end + lag, bounds);
+        });
+        inherited.from_the_end(lag, hull(bounds, self.has(contract, now)));
         inherited
     }
 }

@@ -15,6 +15,7 @@ pub fn grid<R: Real>(ego: &Ego, i: u8) -> R {
 
 /// The hardest acceleration (m/s²) that may be commanded at `speed` (m/s, as sensed) while one of at most `in_effect`
 /// (m/s²) still acts: the ego does not become faster than `ego.max_speed`, and if it is already, no faster than it is.
+#[inline(never)] // Once in flash.
 pub fn most<R: Real>(contract: &Contract, speed: R, in_effect: R) -> R {
     let ego = contract.ego();
     let (period, late) = (R::of(contract.period()), R::of(contract.response()));

@@ -23,6 +23,7 @@ pub struct Departure<R> {
 /// The speed (m/s) up to which the ego certainly goes as hard as it plans: neither its limiter, which errs by the
 /// speed error at most, nor [`super::choice::most`] holds it back. `go` may be reduced while the ego is faster, and it
 /// may then brake until the command is followed. A contract demands that this is at least 0.01 m/s.
+#[inline(never)] // Once in flash.
 pub fn unlimited<R: Real>(contract: &Contract) -> R {
     let ego = &contract.ego;
     let error = R::of(contract.speed_error);
@@ -46,6 +47,7 @@ pub(super) fn fade<R: Real>(contract: &Contract) -> R {
 
 /// Bounds on the ego after `command` (m/s²) for one period, given now at `speed` (m/s, as sensed) while what is `inherited`
 /// still acts.
+#[inline(never)] // Once in flash.
 pub fn departure<R: Real>(
     contract: &Contract,
     speed: R,
@@ -70,7 +72,7 @@ pub fn departure<R: Real>(
     let mut most = braking;
     let mut least = Reach::start(speed - error);
     let mut rest = R::of(contract.shortest_period());
-    for part in inherited.parts() {
+    for part in inherited.parts(contract) {
         let time = R::of(part.time);
         rest = rest - time;
         let [low, high] = part.bounds;
@@ -101,6 +103,7 @@ pub fn departure<R: Real>(
 
 /// The time (s) from now at which the ego has certainly gone `target` metres, if it goes from
 /// `least` on, and the least speed (m/s) that it then has.
+#[inline(never)] // Once in flash.
 pub fn clearing<R: Real>(contract: &Contract, least: Reach<R>, target: R) -> (R, R) {
     let go = weakest(contract, R::of(contract.ego.go));
     let cap = unlimited(contract);
@@ -142,6 +145,7 @@ pub fn braking<R: Real>(contract: &Contract) -> R {
 }
 
 /// The distance (m) from here at which the ego is at rest at the latest, if it goes for `time` more and then brakes.
+#[inline(never)] // Once in flash.
 pub fn rest<R: Real>(contract: &Contract, most: Reach<R>, time: R) -> R {
     let go = strongest(contract, R::of(contract.ego.go));
     most.at_most(go, time).rest(braking(contract))

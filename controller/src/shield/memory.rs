@@ -30,7 +30,7 @@ struct Known {
 }
 
 /// The plan that was verified last, the commands given, and where the ego was.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(crate) struct Memory {
     remembered: Option<Remembered>,
     commands: Commands,
@@ -135,6 +135,7 @@ impl Memory {
     }
 
     /// Where the ego may be at `now`, and how fast, by when it was seen before.
+    #[inline(never)] // Once in flash.
     fn expected(&self, contract: &Contract, now: Instant) -> Option<Known> {
         let (last, at) = self.last?;
         let time = now.seconds_since(at);

@@ -7,7 +7,7 @@ use super::hazard::{self, Hazard};
 use super::own::Own;
 use super::precedence::{PairMemory, ZoneSet, has};
 use super::rules::Rules;
-use super::unwatched::{Closed, Entry, Place, Unwatched, unplaced};
+use super::unwatched::{Closed, Entry, Place, Unwatched, take, unplaced};
 use super::waiting::{RestState, Sighting};
 use crate::fault::Fault;
 use crate::instant::Instant;
@@ -299,8 +299,8 @@ impl<const N: usize> Tracks<N> {
                 let left = other.entry::<R>(way, ego.least, spare).is_none();
                 open.is_none() && (other.seen || left)
             };
-            if let Some(place) = self.watched.iter().position(idle) {
-                let idle = self.watched.swap_remove(place);
+            let place = self.watched.iter().position(idle);
+            if let Some(idle) = place.and_then(|place| take(&mut self.watched, place)) {
                 let (number, path) = (idle.number, idle.path);
                 self.unwatched.close(number, path, idle.place(), FAR);
                 if let Some(entry) = self.unwatched.placed(number, path) {

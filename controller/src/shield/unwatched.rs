@@ -56,6 +56,15 @@ impl Entry {
     }
 }
 
+/// Takes out what is at `place`, which the last one gets. `swap_remove` would need 1.5 KB of `memmove` on the target.
+pub(super) fn take<T, const N: usize>(all: &mut Vec<T, N>, place: usize) -> Option<T> {
+    let (last, others) = all.split_last_mut()?;
+    if let Some(other) = others.get_mut(place) {
+        core::mem::swap(other, last);
+    }
+    all.pop()
+}
+
 /// Everybody who is not watched.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Unwatched {
@@ -117,7 +126,7 @@ impl Unwatched {
             && self.entries.is_full()
             && let Some(place) = self.entries.iter().position(left)
         {
-            self.entries.swap_remove(place);
+            let _ = take(&mut self.entries, place);
         }
         if self.entries.push(entry).is_err() && from < FAR {
             self.beyond = sooner(self.beyond, Closed { number, from });

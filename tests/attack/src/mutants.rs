@@ -167,7 +167,7 @@ mutants! {
     }
     "one command in flight" in "drivetrain": OneInFlight {
         fn departure(contract: &Contract, speed: f32, inherited: &Inherited<f32>, command: f32) -> Departure<f32> {
-            let newest = inherited.parts().last().map_or([command; 2], |part| part.bounds);
+            let newest = inherited.parts(contract).last().map_or([command; 2], |part| part.bounds);
             margin::departure(contract, speed, &Inherited::all(contract, newest), command)
         }
     }

@@ -11,7 +11,11 @@ const report = JSON.parse(document.getElementById("data").textContent);
 
 document.getElementById("subtitle").textContent = report.subtitle;
 document.getElementById("provenance").textContent = report.provenance;
-if (report.rows.length) tables(document.getElementById("tables"), report);
+document.getElementById("verdict").textContent = report.verdict;
+if (report.rows.length) {
+  summary(document.getElementById("summary"), report);
+  tables(document.getElementById("tables"), report);
+}
 if (report.cases.length) player(report);
 if (report.learning.length) learning(report);
 if (report.distributions.length) distributions(report);
@@ -26,11 +30,11 @@ function distributions({ distributions, drivers }) {
   const blocks = groupBy(distributions, (d) => d.block);
   find("block").append(...Array.from(blocks.keys(), (name) => new Option(name, name)));
   const draw = () => {
-    const block = blocks.get(find("block").value);
+    const block = few(blocks.get(find("block").value), (d) => d.driver);
     const recorded = block[0].recorded_pet;
     const chart = (host, pick, limit, label, extra) => {
       const series = block.filter((d) => pick(d).length).map((d) => ({
-        points: cumulative(pick(d), d.n, limit), colour: palette.get(d.driver), width: 1.8,
+        points: cumulative(pick(d), d.n, limit), colour: palette.get(d.driver), width: d.driver.startsWith("cede") ? 2.6 : 1.6, dash: dashes(d.driver),
       }));
       lineChart(host, { series: [...series, ...extra], x: { label, low: 0, high: limit }, y: { label: "share of episodes", low: 0, high: 1 } });
     };
@@ -41,7 +45,7 @@ function distributions({ distributions, drivers }) {
     chart(find("ttc"), (d) => d.ttc, 8, "smallest TTC, s", []);
     legend(find("distribution-legend"), [
       { name: "recorded", colour: "var(--ink)", dash: true },
-      ...block.map((d) => ({ name: d.driver, colour: palette.get(d.driver) })),
+      ...block.map((d) => ({ name: d.driver, colour: palette.get(d.driver), dash: dashes(d.driver) !== "none" })),
     ]);
   };
   const told = distributions.find((d) => d.pet.length > 0);

@@ -13,8 +13,19 @@ const REASONS = {
   fallback: { words: "nothing was safe", tint: "--ink" },
 };
 
+// A driver has one hue, behind the shield too.
+const bare = (name) => name.replace(/ \+ shield.*$/, "");
 function colours(names) {
-  return new Map(names.map((name, i) => [name, PALETTE[i % PALETTE.length]]));
+  const bares = [...new Set(names.map(bare))];
+  return new Map(names.map((name) => [name, PALETTE[bares.indexOf(bare(name)) % PALETTE.length]]));
+}
+const dashes = (name) => (bare(name) === name ? "none" : "7 3");
+
+// At most six series: Cede, then those that are not the record, in their order.
+function few(items, name, chosen) {
+  const rank = (item) => (item === chosen ? 0 : bare(name(item)) === "cede" ? 1 : bare(name(item)) === "replay" ? 3 : 2);
+  const kept = new Set([...items].sort((a, b) => rank(a) - rank(b)).slice(0, 6));
+  return items.filter((item) => kept.has(item));
 }
 
 const css = (name) => {
@@ -175,6 +186,18 @@ function player(report) {
     return drives.findLast((d) => d.driver.startsWith("cede")) ?? drives.findLast((d) => d.driver !== "replay") ?? drives[0];
   }
 
+  // Whether the traffic around comes as near as to touch.
+  function meets(c, driven) {
+    return c.around.some(({ appears, route, s, size }) => s.some((at, i) => {
+      const place = pose(route, at);
+      return c.vehicles.some((v, j) => {
+        const own = driven.s[j][Math.min(appears + i, driven.s[j].length - 1)];
+        const { x, y } = pose(v.route, own);
+        return Math.hypot(place.x - x, place.y - y) < 0.5 * (size[0] + PAPER_SIZE[1]);
+      });
+    }));
+  }
+
   function outcome({ first, length, end }) {
     if (end === "collision") return `collision after ${(length * STEP).toFixed(1)} s`;
     if (!first) return "nobody arrives in time";
@@ -185,10 +208,12 @@ function player(report) {
     colour: palette.get(d.driver),
     width: d === drive ? 2.6 : 1.3,
     opacity: d === drive ? 1 : 0.65,
+    dash: dashes(d.driver),
   });
+  const shown = () => few(item.drives, (d) => d.driver, drive);
   const lines = (pick) => {
     const points = (d) => pick(d).map((y, k) => [k * STEP, y]);
-    const others = item.drives.filter((d) => d !== drive);
+    const others = shown().filter((d) => d !== drive);
     return [
       ...others.map((d) => ({ ...styled(d), points: points(d) })),
       { points: points(item.record), colour: "var(--ink)", width: 2, dash: "5 4" },
@@ -230,7 +255,7 @@ function player(report) {
     const acted = new Set(drive.shielded.flat().map(([, reason]) => reason));
     legend(find("chart-legend"), [
       { name: "recorded", colour: "var(--ink)", dash: true },
-      ...item.drives.map((d) => ({ name: d.driver, colour: palette.get(d.driver), chosen: d === drive })),
+      ...shown().map((d) => ({ name: d.driver, colour: palette.get(d.driver), chosen: d === drive, dash: dashes(d.driver) !== "none" })),
       ...Object.keys(REASONS).filter((name) => acted.has(name)).map((name) => ({ name: `shield: ${REASONS[name].words}`, colour: `var(${REASONS[name].tint})`, dot: true })),
     ]);
     find("why").hidden = acted.size === 0;
@@ -240,6 +265,7 @@ function player(report) {
     const t = Number(slider.value);
     view.clear();
     view.map(report.map);
+    if (!report.map.lanes.length) roads();
     const roles = [css("--left"), css("--other")];
     item.vehicles.forEach((v, i) => view.line(v.route, roles[i], 1.2, [4, 5]));
     for (const { appears, size, route, s } of item.around) {
@@ -259,6 +285,11 @@ function player(report) {
     find("why").textContent = why(t);
     clock.textContent = `${t.toFixed(1)} / ${horizon.toFixed(1)} s`;
     for (const chart of charts) chart.at(t);
+  }
+
+  // Without a map: a lane along each route.
+  function roads() {
+    for (const { route } of [...item.around, ...item.vehicles]) view.line(route, css("--lane"), 3.6 * view.scale);
   }
 
   // What the shield of vehicle i does at a time, if it acts.
@@ -299,7 +330,7 @@ function player(report) {
   }
 
   const swatch = (colour, name, ghost) => `<span class="swatch${ghost ? " ghost" : ""}" style="${ghost ? "border-color" : "background"}:var(${colour})"></span>${name}`;
-  find("scene-legend").innerHTML = swatch("--left", "left-turner") + swatch("--other", "other") + swatch("--soft", "as recorded", true) + swatch("--around", "traffic around, recorded");
+  find("scene-legend").innerHTML = swatch("--left", "left-turner") + swatch("--other", "other") + swatch("--soft", "as recorded", true) + swatch("--around", "traffic around, as recorded: nobody reacts to it, and it reacts to nobody");
   caseSelect.onchange = () => { slider.value = 0; choose(); };
   driverSelect.onchange = choose;
   slider.oninput = () => { stop(); draw(); };
@@ -313,8 +344,21 @@ function player(report) {
     }
   });
   find("replay").hidden = false;
+  // The case that the page opens with: the traffic around is out of the way, the shield acts, people went in that order too.
+  const telling = (c) => {
+    const driven = favourite(c.drives);
+    const acts = driven.shielded.some((steps) => steps.length > 0);
+    return 4 * Number(!meets(c, driven)) + 2 * Number(acts) + Number(driven.first === c.record.first);
+  };
+  const best = Math.max(...report.cases.map(telling));
+  caseSelect.value = report.cases.findIndex((c) => telling(c) === best);
   choose();
-  // Somewhere in the middle there is more to see than at the start.
-  slider.value = (0.6 * STEP * item.record.length).toFixed(1);
-  draw();
+  const still = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
+  if (still) {
+    // Somewhere in the middle there is more to see than at the start.
+    slider.value = (0.6 * STEP * item.record.length).toFixed(1);
+    draw();
+  } else {
+    toggle();
+  }
 }

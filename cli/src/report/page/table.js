@@ -67,6 +67,81 @@ function tables(host, { rows, paper }) {
   }
 }
 
+// What the drivers are, in the order of the compact table.
+const DRIVERS = {
+  cede: "the embedded policy, trained on synthetic traffic alone; after each decision the shield may overrule it",
+  replay: "repeats the recorded accelerations: the floor of every measure",
+  human: "a model of a driver that yields by time gaps",
+  logistic: "a logistic regression on the initial state decides who goes first",
+  idm: "the intelligent driver model",
+  "nearer-first": "who is nearer to the conflict goes first",
+  "mean-speed": "everybody drives at the mean speed of the training split",
+  "initial-speed": "everybody keeps the speed at the beginning",
+};
+
+const SUMMARY = [
+  { head: "priority accuracy", key: "priority_accuracy", best: Math.max, show: (r) => share(r.priority_accuracy, r.priority_accuracy_interval).slice(0, 2) },
+  { head: "length error", key: "episode_length_error", best: Math.min, show: (r) => number(r.episode_length_error, 3) },
+  { head: "collisions", key: "collisions", bad: (r) => r.collisions > 0, show: (r) => [String(r.collisions)] },
+  { head: "time-outs", key: "time_outs", show: (r) => [String(r.time_outs)] },
+];
+
+// One row a driver, without the shield beside behind it, for the first protocol of the page. Nothing, where all rows have one shield.
+function summary(host, { rows }) {
+  const first = rows[0];
+  const same = rows.filter((r) => ["split", "mode", "until"].every((key) => r[key] === first[key]));
+  const shields = [...new Set(same.map((r) => r.shield))].slice(0, 2);
+  const names = [...new Set(same.map((r) => r.driver))];
+  const order = Object.keys(DRIVERS);
+  const rank = (name) => (order.includes(name) ? order.indexOf(name) : -1);
+  names.sort((a, b) => rank(a) - rank(b));
+  const of = (driver, shield) => same.find((r) => r.driver === driver && r.shield === shield);
+  const table = document.createElement("table");
+  table.className = "summary";
+  const head = table.createTHead();
+  const cell = (row, text, span = 1) => {
+    const th = document.createElement("th");
+    th.textContent = text;
+    th.colSpan = span;
+    th.scope = span > 1 ? "colgroup" : "col";
+    row.append(th);
+  };
+  const groups = head.insertRow();
+  cell(groups, "");
+  for (const shield of shields) cell(groups, shield === "off" ? "without the shield" : `behind the shield${shield === "on" ? "" : ` (${shield})`}`, SUMMARY.length);
+  const heads = head.insertRow();
+  cell(heads, "driver");
+  for (const _ of shields) for (const { head } of SUMMARY) cell(heads, head);
+  const body = table.createTBody();
+  for (const name of names) {
+    const line = body.insertRow();
+    line.insertCell().textContent = name;
+    for (const shield of shields) {
+      const row = of(name, shield);
+      for (const column of SUMMARY) {
+        const td = line.insertCell();
+        if (!row) continue;
+        td.append(...column.show(row));
+        if (column.bad?.(row)) td.className = "bad";
+        const rivals = same.filter((r) => r.shield === shield && r.driver !== "replay" && known(r[column.key])).map((r) => r[column.key]);
+        if (column.best && rivals.length > 1 && name !== "replay" && row[column.key] === column.best(...rivals)) td.className = "best";
+      }
+    }
+  }
+  const wrap = document.createElement("div");
+  wrap.className = "scroll";
+  wrap.append(table);
+  const title = document.createElement("p");
+  title.textContent = `${first.split}: ${first.encounters} encounters, ${first.mode === "joint" ? "one driver for both vehicles" : "a driver for one vehicle at a time"}, ${first.until === "conflict" ? "until the first arrival" : "until both have left"}. Best of each column in bold.`;
+  host.append(title, wrap);
+  document.getElementById("who").append(...names.filter((name) => DRIVERS[name]).flatMap((name) => {
+    const [dt, dd] = ["dt", "dd"].map((tag) => document.createElement(tag));
+    dt.textContent = name;
+    dd.textContent = DRIVERS[name];
+    return [dt, dd];
+  }));
+}
+
 function groupBy(items, key) {
   const groups = new Map();
   for (const item of items) {
