@@ -136,11 +136,36 @@ pub(super) struct Commands {
 }
 
 /// A command on its way.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 struct Flight {
+    /// In m/s²; not a number, if it may be any.
+    command: f32,
+    /// When it was given, in microseconds, without those above 32 bits.
+    given: u32,
+}
+
+impl Flight {
     /// What it may lead to: the least and the largest acceleration, in m/s².
-    bounds: [f32; 2],
-    given: Instant,
+    fn bounds(self, contract: &Contract) -> [f32; 2] {
+        if self.command.is_nan() {
+            anything(contract)
+        } else {
+            [
+                weakest(contract, self.command),
+                strongest(contract, self.command),
+            ]
+        }
+    }
+
+    /// Microseconds from when it was given to `now`.
+    const fn age(self, now: u32) -> u32 {
+        now.wrapping_sub(self.given)
+    }
+}
+
+/// Microseconds, without those above 32 bits.
+const fn short(now: Instant) -> u32 {
+    now.micros() as u32
 }
 
 impl Commands {
@@ -155,36 +180,31 @@ impl Commands {
     /// `command` (m/s²) is given at `now`.
     pub(super) fn give(&mut self, contract: &Contract, command: f32, now: Instant) {
         self.had = self.has(contract, now);
+        let given = short(now);
         if self.flights.is_empty() {
             // Whatever was commanded before may act for as long as any command.
             let _ = self.flights.push_back(Flight {
-                bounds: anything(contract),
-                given: Instant::default(),
+                command: f32::NAN,
+                given,
             });
         }
         if self.flights.is_full() {
-            self.join();
+            self.flights.pop_front();
+            // It stands for the one before it, too.
+            if let Some(oldest) = self.flights.front_mut() {
+                oldest.command = f32::NAN;
+            }
         }
-        let _ = self.flights.push_back(Flight {
-            bounds: [weakest(contract, command), strongest(contract, command)],
-            given: now,
-        });
-    }
-
-    /// The two oldest commands count as one that may be either.
-    fn join(&mut self) {
-        let oldest = self.flights.pop_front();
-        if let (Some(oldest), Some(next)) = (oldest, self.flights.front_mut()) {
-            next.bounds = hull(oldest.bounds, next.bounds);
-        }
+        let _ = self.flights.push_back(Flight { command, given });
     }
 
     /// Of the commands given, from the last one back, until when (s from `now`) each may be in effect.
-    fn acting(&self, contract: &Contract, now: Instant, mut each: impl FnMut(f32, [f32; 2])) {
+    fn acting(&self, contract: &Contract, now: u32, mut each: impl FnMut(f32, [f32; 2])) {
+        let latency = u32::try_from(micros(contract.latency)).unwrap_or(u32::MAX);
         let mut end = contract.switching();
         for flight in self.flights.iter().rev() {
-            each(end, flight.bounds);
-            let left = flight.given.plus(micros(contract.latency)).since(now);
+            each(end, flight.bounds(contract));
+            let left = latency.saturating_sub(flight.age(now));
             // The one before it acts until it is in effect. A microsecond is how exact a latency is.
             if left <= 1 {
                 return;
@@ -198,7 +218,7 @@ impl Commands {
         let Some(last) = self.flights.back() else {
             return anything(contract);
         };
-        let mut bounds = last.bounds;
+        let mut bounds = last.bounds(contract);
         self.acting(contract, last.given, |_, of| bounds = hull(bounds, of));
         bounds
     }
@@ -218,7 +238,7 @@ impl Commands {
         let Some(last) = self.flights.back() else {
             return anything(contract);
         };
-        let elapsed = now.seconds_since(last.given);
+        let elapsed = last.age(short(now)) as f32 * 1.0e-6;
         follow(contract, self.had, self.in_effect(contract), elapsed)
     }
 
@@ -227,9 +247,9 @@ impl Commands {
         let Some(last) = self.flights.back() else {
             return Inherited::all(contract, anything(contract));
         };
-        let (lag, mut bounds) = (contract.ego.lag, last.bounds);
+        let (lag, mut bounds) = (contract.ego.lag, last.bounds(contract));
         let mut inherited = Inherited { parts: Vec::new() };
-        self.acting(contract, now, |end, of| {
+        self.acting(contract, short(now), |end, of| {
             bounds = hull(bounds, of);
             inherited.from_the_end(end + lag, bounds);
         });
