@@ -150,7 +150,8 @@ impl Builder {
         let value = self.activate(value, Activation::Identity)?;
         let divided = self.map(&value, divisors.len(), reciprocal)?;
         let uncertain = Variable {
-            uncertainty: f64::EPSILON,
+            // One rounding: half a unit in the last place, more where the reciprocal is not normal.
+            uncertainty: 2.0 * f64::EPSILON,
             ..divided
         };
         self.activate(&uncertain, Activation::Identity)

@@ -11,10 +11,7 @@ const SMALL: &str = "
 ";
 
 fn half(coefficients: [f64; 2], bound: f64) -> Halfspace {
-    Halfspace {
-        coefficients: coefficients.to_vec(),
-        bound,
-    }
+    Halfspace::new(coefficients.to_vec(), bound)
 }
 
 #[test]

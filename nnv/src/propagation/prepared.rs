@@ -3,21 +3,23 @@
 use crate::relaxation::Lines;
 use cede_nnv_check::rounding::gamma;
 use cede_nnv_check::{Activation, Halfspace, Network};
+use std::sync::Arc;
 
 /// A network and the atoms of a query as the propagation wants them: weights by input neuron.
 pub(crate) struct Prepared {
     pub(crate) inputs: usize,
-    pub(super) layers: Vec<PreparedLayer>,
+    /// The network's layers, then one for the atoms.
+    pub(crate) layers: Vec<Arc<PreparedLayer>>,
     /// Neurons with an activation, over all layers.
     pub(crate) neurons: usize,
     /// How an unstable ReLU is enclosed: [`Lines::relu`]; tests plant unsound lines here.
     pub(crate) enclose: fn(f64, f64) -> Lines,
 }
 
-pub(super) struct PreparedLayer {
-    pub(super) outputs: usize,
+pub(crate) struct PreparedLayer {
+    pub(crate) outputs: usize,
     /// One row for each *input* of the layer.
-    pub(super) columns: Vec<f64>,
+    pub(crate) columns: Vec<f64>,
     pub(super) bias: Vec<f64>,
     pub(super) activation: Activation,
     pub(super) relative_error: f64,
@@ -36,7 +38,7 @@ impl Prepared {
             let columns = (0..inputs)
                 .flat_map(|j| (0..outputs).map(move |i| layer.weights.row(i)[j]))
                 .collect();
-            layers.push(PreparedLayer {
+            layers.push(Arc::new(PreparedLayer {
                 outputs,
                 columns,
                 bias: layer.bias.clone(),
@@ -44,30 +46,46 @@ impl Prepared {
                 relative_error: layer.relative_error(),
                 uncertainty: 2.0 * layer.uncertainty,
                 first: neurons,
-            });
+            }));
             neurons += if layer.activation == Activation::Identity {
                 0
             } else {
                 outputs
             };
         }
-        let outputs = network.outputs();
-        layers.push(PreparedLayer {
-            outputs: atoms.len(),
-            columns: (0..outputs)
-                .flat_map(|j| atoms.iter().map(move |a| a.coefficients[j]))
-                .collect(),
-            bias: atoms.iter().map(|a| -a.bound).collect(),
-            activation: Activation::Identity,
-            relative_error: gamma(outputs + 4),
-            uncertainty: 0.0,
-            first: neurons,
-        });
-        Self {
+        let prepared = Self {
             inputs: network.inputs(),
             layers,
             neurons,
             enclose: Lines::relu,
-        }
+        };
+        prepared.followed_by(network.outputs(), atoms)
+    }
+
+    /// The same network with other atoms.
+    pub(crate) fn with_atoms(&self, outputs: usize, atoms: &[&Halfspace]) -> Self {
+        let own = self.layers.len().saturating_sub(1);
+        let network = Self {
+            layers: self.layers[..own].to_vec(),
+            ..*self
+        };
+        network.followed_by(outputs, atoms)
+    }
+
+    fn followed_by(mut self, outputs: usize, atoms: &[&Halfspace]) -> Self {
+        // A coefficient that is rounded is off by one rounding.
+        let rounded = atoms.iter().any(|atom| atom.is_rounded());
+        self.layers.push(Arc::new(PreparedLayer {
+            outputs: atoms.len(),
+            columns: (0..outputs)
+                .flat_map(|j| atoms.iter().map(move |a| a.coefficients()[j]))
+                .collect(),
+            bias: atoms.iter().map(|a| -a.bound()).collect(),
+            activation: Activation::Identity,
+            relative_error: gamma(outputs + 8),
+            uncertainty: if rounded { 2.0 * f64::EPSILON } else { 0.0 },
+            first: self.neurons,
+        }));
+        self
     }
 }

@@ -30,7 +30,7 @@ impl Node {
 /// The children are in the order in which they are searched last to first.
 pub(super) fn split_input(node: Node, scores: &[f64]) -> Option<(Split, [Node; 2])> {
     let InputBox { lower, upper } = &node.region;
-    let middle = |i: usize| 0.5 * (lower[i] + upper[i]);
+    let middle = |i: usize| f64::midpoint(lower[i], upper[i]);
     let divisible = |&i: &usize| lower[i] < middle(i) && middle(i) < upper[i];
     let better = |&a: &usize, &b: &usize| {
         let width = |i: usize| upper[i] - lower[i];
