@@ -187,21 +187,34 @@ pub fn verify(
     let deadline = start
         .checked_add(options.timeout)
         .unwrap_or_else(|| start + Duration::from_secs(1 << 32));
+    let prepared = Prepared::new(network, &[]);
+    Ok(verify_prepared(
+        network, &prepared, property, options, deadline,
+    ))
+}
+
+/// [`verify`] for a property that fits the network, which is prepared.
+fn verify_prepared(
+    network: &Network,
+    prepared: &Prepared,
+    property: &Property,
+    options: SearchOptions,
+    deadline: Instant,
+) -> Report {
     let mut report = Report {
         answer: Answer::Unsat,
         regions: 0,
         branching: options.branching,
         proofs: Vec::new(),
     };
-    let prepared = Prepared::new(network, &[]);
     let found = anything(network, property)
-        .or_else(|| attack::attack(network, &prepared, property, options.seed, deadline));
+        .or_else(|| attack::attack(network, prepared, property, options.seed, deadline));
     if let Some(witness) = found {
         report.answer = Answer::Sat(witness);
-        return Ok(report);
+        return report;
     }
     for query in &property.queries {
-        let problem = search::Problem::new(network, &prepared, query, options, deadline);
+        let problem = search::Problem::new(network, prepared, query, options, deadline);
         let outcome = problem.search();
         report.regions += outcome.regions;
         report.branching = outcome.branching;
@@ -222,7 +235,7 @@ pub fn verify(
     if report.answer != Answer::Unsat || !options.record {
         report.proofs.clear();
     }
-    Ok(report)
+    report
 }
 
 /// A witness of a query that asks nothing of the outputs: any input.

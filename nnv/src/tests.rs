@@ -1,6 +1,10 @@
 //! The verifier against oracles that share nothing with it: enumeration of all activation
 //! patterns by linear programmes, and dense sampling.
 
+mod cases;
+mod differential;
+mod oracle;
+
 use super::propagation::{Prepared, Workspace};
 use super::relaxation::Lines;
 use super::*;
