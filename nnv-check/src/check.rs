@@ -49,7 +49,7 @@ pub enum CheckError {
     },
     /// A recorded refutation does not hold.
     #[error(
-        "region {cell}: conjunction {conjunction} is only bounded by {bound}, which does not refute it"
+        "region {cell}: conjunction {conjunction} is only bounded by {bound:e}, which does not refute it"
     )]
     Unsound {
         /// Index of the region.

@@ -42,11 +42,13 @@ const TASK: usize = 200;
 /// Tasks of one round.
 const ROUND: usize = 64;
 /// Up to so many inputs, cutting across them is the likelier to pay; beyond, across phases.
-const FEW_INPUTS: usize = 20;
-/// Regions of the likelier way's first turn; it doubles.
-const FIRST_TURN: u64 = 1 << 15;
+const SOME_INPUTS: usize = 20;
+/// Up to so many, it nearly always does.
+const FEW_INPUTS: usize = 12;
+/// Regions of the likelier way's first turn; they double from turn to turn.
+const FIRST_TURN: u64 = 1 << 12;
 /// The other way's turn is so many times shorter.
-const UNLIKELIER: u64 = 8;
+const UNLIKELIER: u64 = 4;
 
 /// A query to be searched.
 pub(super) struct Problem<'a> {
@@ -98,15 +100,19 @@ impl<'a> Problem<'a> {
 
     /// Searches the query's whole box.
     pub(super) fn search(&self) -> Outcome {
-        let few = self.query.region.lower.len() <= FEW_INPUTS;
+        let inputs = self.query.region.lower.len();
         let ways: &[Branching] = match self.options.branching {
-            Branching::Auto if few => &[Branching::Inputs, Branching::Phases],
+            Branching::Auto if inputs <= SOME_INPUTS => &[Branching::Inputs, Branching::Phases],
             Branching::Auto => &[Branching::Phases, Branching::Inputs],
             Branching::Inputs => &[Branching::Inputs],
             Branching::Phases => &[Branching::Phases],
         };
         let mut trees: Vec<Tree> = ways.iter().map(|&way| self.tree(way)).collect();
-        let mut turn = FIRST_TURN;
+        let mut turn = if inputs <= FEW_INPUTS {
+            8 * FIRST_TURN
+        } else {
+            FIRST_TURN
+        };
         loop {
             let mut open = false;
             for (rank, tree) in trees.iter_mut().enumerate() {

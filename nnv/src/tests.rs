@@ -2,6 +2,7 @@
 //! patterns by linear programmes, and dense sampling.
 
 mod cases;
+mod corners;
 mod differential;
 mod oracle;
 

@@ -271,7 +271,8 @@ impl Case {
     }
 }
 
-fn onnx(problem: &Problem, single: bool) -> Vec<u8> {
+/// The network as an ONNX file, in `f32` or `f64`.
+pub(super) fn onnx(problem: &Problem, single: bool) -> Vec<u8> {
     let tensor = |name: String, dims: Vec<i64>, values: Vec<f64>| {
         let raw_data = if single {
             values
