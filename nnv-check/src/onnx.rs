@@ -24,7 +24,7 @@ pub enum OnnxError {
 }
 
 /// Reads a network. Never panics on any bytes; memory is bounded by a small multiple of the file's
-/// size and of the largest layer (at most 2²² weights).
+/// size and of the largest layer (at most 2²⁶ weights).
 ///
 /// # Errors
 /// If the bytes are not an ONNX model, or the graph is more than a feed-forward chain: the first
@@ -76,7 +76,11 @@ fn apply(step: &Step, values: &[Variable], builder: &mut Builder) -> Result<Vari
             builder.map(x, factors.len(), |i| (vec![(i, factors[i])], 0.0))
         }
         Operation::Divide(divisors) => builder.divide(x, divisors),
-        Operation::Linear(linear) => builder.map(x, linear.outputs(), |i| (linear.terms(i), 0.0)),
+        Operation::Linear(linear) => builder.map(x, linear.outputs(), |i| {
+            let mut terms = linear.terms(i);
+            terms.retain(|&(_, c)| c != 0.0);
+            (terms, 0.0)
+        }),
         Operation::Relu => builder.activate(x, Activation::Relu),
         Operation::Tanh => builder.activate(x, Activation::Tanh),
         Operation::Clip { low, high } => clip(x, *low, *high, builder),

@@ -13,6 +13,8 @@ const RESTARTS: usize = 40;
 const RESTARTS_IN_ALL: usize = 4000;
 /// Steps from each.
 const STEPS: usize = 40;
+/// Most products that all steps together may take: a few seconds.
+const MOST_PRODUCTS: usize = 1 << 32;
 
 /// A counterexample, confirmed in exact arithmetic, if one is found in time. The same seed tries
 /// the same points.
@@ -27,10 +29,15 @@ pub(super) fn attack(
     let mut runner = Runner::new(network, prepared);
     let queries = || property.queries.iter();
     let conjunctions: usize = queries().map(|q| q.unsafe_set.len()).sum();
-    // Where there are very many, the search finds its own candidates.
-    let restarts = (RESTARTS_IN_ALL / conjunctions.max(1)).min(RESTARTS);
-    for query in queries() {
-        for conjunction in &query.unsafe_set {
+    // Where there are very many conjunctions, the first few are tried; the search finds its own
+    // candidates in each.
+    let weights: usize = network.layers().iter().map(|l| l.weights.data().len()).sum();
+    let affordable = MOST_PRODUCTS / (2 * STEPS * weights).max(1);
+    let all = RESTARTS_IN_ALL.min(affordable.max(1));
+    let restarts = all.div_ceil(conjunctions.max(1)).min(RESTARTS);
+    let pairs = queries().flat_map(|q| q.unsafe_set.iter().map(move |c| (q, c)));
+    for (query, conjunction) in pairs.take(all) {
+        {
             for restart in 0..restarts {
                 let start = start(&query.region, restart, &mut random);
                 let end = pulp::Arch::new().dispatch(|| {

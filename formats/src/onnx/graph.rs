@@ -11,7 +11,7 @@ mod linear;
 mod moves;
 
 use super::proto;
-use super::shape::{MOST_ELEMENTS, Shape};
+use super::shape::{MOST_ELEMENTS, MOST_WEIGHTS, Shape};
 use super::tensor::Values;
 use arguments::Arguments;
 pub use linear::Linear;
@@ -137,9 +137,11 @@ pub enum GraphError {
 
 /// The most elements that all nodes of a graph give together.
 const MOST_IN_ALL: usize = 1 << 25;
+/// The most elements that all constants of its nodes have together.
+const MOST_CONSTANT: usize = 1 << 27;
 
 /// Reads a graph. Never panics on any bytes; memory is bounded by a small multiple of the file's
-/// size, plus 2²⁵ elements.
+/// size, plus 2²⁵ elements and 2²⁷ weights.
 ///
 /// # Errors
 /// If the bytes are not an ONNX model, or the graph holds more than the operators of the module's
@@ -167,6 +169,7 @@ pub fn read(bytes: &[u8]) -> Result<Graph, GraphError> {
     let mut recorder = Recorder {
         next: inputs.len(),
         room: MOST_IN_ALL,
+        constants: MOST_CONSTANT,
         steps: Vec::new(),
     };
     for node in &graph.node {
@@ -181,7 +184,12 @@ pub fn read(bytes: &[u8]) -> Result<Graph, GraphError> {
             .ok_or_else(|| fault("gives nothing".to_owned()))?;
         let arguments = Arguments::new(node, &values);
         let value = apply(&arguments, &mut recorder).map_err(fault)?;
-        recorder.charge(value.shape().size()).map_err(fault)?;
+        let size = value.shape().size();
+        let charged = match value {
+            Value::Constant(_) => recorder.charge_constant(size),
+            Value::Variable(_) => recorder.charge(size),
+        };
+        charged.map_err(fault)?;
         values.insert(output, value);
     }
     let output = output(&graph, &values)?;
@@ -230,8 +238,10 @@ struct Constant {
 
 impl Constant {
     fn read(tensor: &proto::Tensor) -> Result<Self, String> {
-        let shape =
-            Shape::stated(&tensor.dims).ok_or_else(|| format!("shape {:?}", tensor.dims))?;
+        let shape = Shape::stated(&tensor.dims).ok_or_else(|| {
+            let dims = &tensor.dims;
+            format!("shape {dims:?} is negative or has more than {MOST_WEIGHTS} (2²⁶) elements")
+        })?;
         let values = tensor.values().map_err(|e| e.to_string())?;
         Ok(Self { shape, values })
     }
@@ -243,13 +253,27 @@ struct Recorder {
     next: usize,
     /// Elements that the graph may still give.
     room: usize,
+    /// Elements that its nodes' constants may still have.
+    constants: usize,
     steps: Vec<Step>,
 }
 
 impl Recorder {
     fn charge(&mut self, elements: usize) -> Result<(), String> {
         let room = self.room.checked_sub(elements);
-        self.room = room.ok_or("makes the graph too large")?;
+        self.room = room.ok_or_else(|| {
+            format!(
+                "makes the graph too large: its nodes give more than {MOST_IN_ALL} (2²⁵) elements"
+            )
+        })?;
+        Ok(())
+    }
+
+    fn charge_constant(&mut self, elements: usize) -> Result<(), String> {
+        let room = self.constants.checked_sub(elements);
+        self.constants = room.ok_or_else(|| {
+            format!("makes the graph too large: its constants have more than {MOST_CONSTANT} (2²⁷) elements")
+        })?;
         Ok(())
     }
 
@@ -261,7 +285,13 @@ impl Recorder {
         operation: Operation,
         shape: Shape,
     ) -> Result<Variable, String> {
-        self.charge(shape.size())?;
+        let size = shape.size();
+        if size > MOST_ELEMENTS {
+            return Err(format!(
+                "gives {size} elements; at most {MOST_ELEMENTS} (2²²) are supported"
+            ));
+        }
+        self.charge(size)?;
         self.steps.push(Step {
             node: arguments.node.label(),
             operator: arguments.node.op_type.clone(),
@@ -320,7 +350,9 @@ fn inputs<'a>(
     match inputs.iter().map(|(_, shape)| shape.size()).sum() {
         0 => Err(GraphError::Graph("the graph has no input".to_owned())),
         1..=MOST_ELEMENTS => Ok(inputs),
-        many => Err(GraphError::Graph(format!("{many} inputs are too many"))),
+        many => Err(GraphError::Graph(format!(
+            "{many} inputs; at most {MOST_ELEMENTS} (2²²) are supported"
+        ))),
     }
 }
 

@@ -3,7 +3,7 @@
 use super::OnnxError;
 use crate::model::{Activation, Layer, Matrix, Network};
 use crate::rounding::{exact_product, exact_sum};
-use cede_formats::onnx::MOST_ELEMENTS;
+use cede_formats::onnx::MOST_WEIGHTS;
 use cede_formats::onnx::graph::GraphError;
 use std::ops::Range;
 
@@ -61,7 +61,7 @@ pub(super) struct Builder {
 }
 
 /// The most entries that all maps of a graph have together.
-const MOST_IN_ALL: usize = 1 << 26;
+const MOST_IN_ALL: usize = 1 << 28;
 
 impl Builder {
     pub(super) fn new(inputs: usize) -> Self {
@@ -173,9 +173,11 @@ impl Builder {
         let outputs = value.rows.len();
         if outputs
             .checked_mul(width)
-            .is_none_or(|entries| entries > MOST_ELEMENTS)
+            .is_none_or(|entries| entries > MOST_WEIGHTS)
         {
-            return Err(format!("a layer of {width} by {outputs} is too large"));
+            return Err(format!(
+                "gives a layer of {width} by {outputs} weights; at most {MOST_WEIGHTS} (2²⁶) are supported"
+            ));
         }
         let mut weights = Matrix::zeros(outputs, width);
         for (i, row) in value.rows.iter().enumerate() {
@@ -203,9 +205,11 @@ impl Builder {
         self.room = self
             .room
             .checked_sub(entries + value.size())
-            .ok_or("makes the graph too large")?;
-        if entries > MOST_ELEMENTS {
-            return Err("gives too large a map".to_owned());
+            .ok_or_else(|| format!("makes the network too large: its maps have more than {MOST_IN_ALL} (2²⁸) entries"))?;
+        if entries > MOST_WEIGHTS {
+            return Err(format!(
+                "gives a map of {entries} weights; at most {MOST_WEIGHTS} (2²⁶) are supported"
+            ));
         }
         Ok(value)
     }

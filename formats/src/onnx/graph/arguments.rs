@@ -134,6 +134,6 @@ pub(super) fn constant(arguments: &Arguments<'_>) -> Result<Value, String> {
     if matches!(&values, Values::Real(values) if values.iter().any(|v| !v.is_finite())) {
         return Err("holds a number that is not finite".to_owned());
     }
-    let shape = Shape::new(dims).ok_or("is too large")?;
+    let shape = Shape::new(dims).ok_or("has more than 2²⁶ elements")?;
     Ok(Value::Constant(Constant { shape, values }))
 }
