@@ -45,6 +45,9 @@ pub struct Halfspace {
 /// Sizes of coefficients whose products with ordinary numbers neither overflow nor vanish.
 const TAME: std::ops::Range<f64> = 1e-30..1e30;
 
+/// Most bits of a constraint's common denominator.
+const MOST_BITS: u64 = 1 << 17;
+
 impl Halfspace {
     /// coefficients · y ≤ bound, one coefficient for each output. Panics if a number is not finite.
     #[must_use]
@@ -71,19 +74,22 @@ impl Halfspace {
     }
 
     /// The constraint Σ terms ≤ bound on so many outputs, multiplied by a positive number so that it
-    /// is exact where that is possible, and neither large nor small.
+    /// is exact where that is possible, and neither large nor small; `None` if their common
+    /// denominator is too long to be computed with.
     pub(crate) fn of_fractions(
         terms: &[(usize, BigRational)],
         bound: &BigRational,
         outputs: usize,
-    ) -> Self {
+    ) -> Option<Self> {
         let all = || terms.iter().map(|(_, c)| c).chain([bound]);
         let tame =
             |c: &BigRational| c.is_zero() || exactly(c).is_some_and(|c| TAME.contains(&c.abs()));
         let unit = if all().all(tame) {
             BigRational::one()
         } else {
-            let denominators = all().fold(BigInt::one(), |unit, c| unit.lcm(c.denom()));
+            let denominators = all().try_fold(BigInt::one(), |unit, c| {
+                Some(unit.lcm(c.denom())).filter(|unit| unit.bits() <= MOST_BITS)
+            })?;
             let largest = all()
                 .map(|c| c.abs())
                 .max()
@@ -112,12 +118,12 @@ impl Halfspace {
             exact[outputs] = of(bound);
             exact.into()
         });
-        Self {
+        Some(Self {
             coefficients,
             bound: rounded(bound),
             strict: false,
             exact,
-        }
+        })
     }
 
     /// One coefficient for each output, exact unless [`Self::is_rounded`].

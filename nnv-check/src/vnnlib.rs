@@ -254,7 +254,9 @@ fn add(
             if *last >= outputs {
                 return Err(place.error(format!("Y_{last} is not declared")));
             }
-            let half = Halfspace::of_fractions(of_y, bound, outputs);
+            let half = Halfspace::of_fractions(of_y, bound, outputs).ok_or_else(|| {
+                place.error("its numbers have too many digits for a common denominator".to_owned())
+            })?;
             disjunct
                 .outputs
                 .push(if strict { half.strict() } else { half });

@@ -31,23 +31,24 @@ pub(super) fn attack(
     let conjunctions: usize = queries().map(|q| q.unsafe_set.len()).sum();
     // Where there are very many conjunctions, the first few are tried; the search finds its own
     // candidates in each.
-    let weights: usize = network.layers().iter().map(|l| l.weights.data().len()).sum();
+    let weights: usize = network
+        .layers()
+        .iter()
+        .map(|l| l.weights.data().len())
+        .sum();
     let affordable = MOST_PRODUCTS / (2 * STEPS * weights).max(1);
     let all = RESTARTS_IN_ALL.min(affordable.max(1));
     let restarts = all.div_ceil(conjunctions.max(1)).min(RESTARTS);
     let pairs = queries().flat_map(|q| q.unsafe_set.iter().map(move |c| (q, c)));
     for (query, conjunction) in pairs.take(all) {
-        {
-            for restart in 0..restarts {
-                let start = start(&query.region, restart, &mut random);
-                let end = pulp::Arch::new().dispatch(|| {
-                    descend(&mut runner, &query.region, conjunction, start, deadline)
-                })?;
-                let near = is_near(conjunction, runner.run(&end));
-                let witness = || Witness::near(network, query, &end);
-                if let Some(witness) = near.then(witness).flatten() {
-                    return Some(witness);
-                }
+        for restart in 0..restarts {
+            let start = start(&query.region, restart, &mut random);
+            let end = pulp::Arch::new()
+                .dispatch(|| descend(&mut runner, &query.region, conjunction, start, deadline))?;
+            let near = is_near(conjunction, runner.run(&end));
+            let witness = || Witness::near(network, query, &end);
+            if let Some(witness) = near.then(witness).flatten() {
+                return Some(witness);
             }
         }
     }

@@ -3,12 +3,19 @@
 use num_bigint::BigInt;
 use num_rational::BigRational;
 
-/// The largest power of ten that a decimal may be written with; beyond it a hostile file could
-/// exhaust the memory.
-pub(super) const MOST_EXPONENT: i64 = 2000;
+/// The largest power of ten that a decimal may be written with, and the most digits: far more than
+/// the exact decimal of any `f64` has. Beyond them a hostile file could take forever.
+pub(super) const MOST_DIGITS: usize = 5000;
+/// The most bits of the numerator or denominator of a number that the reader computes.
+const MOST_BITS: u64 = 1 << 16;
+
+/// Whether a number is of a size that is computed with.
+pub(super) fn is_moderate(value: &BigRational) -> bool {
+    value.numer().bits() <= MOST_BITS && value.denom().bits() <= MOST_BITS
+}
 
 /// The value of a decimal such as `-12.5e-3`; `None` if the word is none, or beyond
-/// [`MOST_EXPONENT`].
+/// [`MOST_DIGITS`].
 pub(super) fn value(word: &str) -> Option<BigRational> {
     let (mantissa, exponent) = match word.find(['e', 'E']) {
         Some(at) => (&word[..at], word[at + 1..].parse::<i64>().ok()?),
@@ -22,7 +29,8 @@ pub(super) fn value(word: &str) -> Option<BigRational> {
     let mut digits = whole.bytes().chain(fraction.bytes());
     if whole.len() + fraction.len() == 0
         || !digits.all(|b| b.is_ascii_digit())
-        || exponent.abs() > MOST_EXPONENT
+        || exponent.unsigned_abs() > MOST_DIGITS as u64
+        || mantissa.len() > MOST_DIGITS
     {
         return None;
     }

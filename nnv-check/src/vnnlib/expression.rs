@@ -121,24 +121,43 @@ struct Linear {
 }
 
 impl Linear {
-    fn add(&mut self, other: Self, sign: f64) {
+    /// Adds ± other.
+    ///
+    /// # Errors
+    /// If a number gets too many digits.
+    fn add(&mut self, other: Self, sign: f64, place: Place) -> Result<(), VnnlibError> {
         let signed = |c: BigRational| if sign < 0.0 { -c } else { c };
         self.constant += signed(other.constant);
+        moderate(&self.constant, place)?;
         for (variable, c) in other.terms {
-            *self.terms.entry(variable).or_insert_with(BigRational::zero) += signed(c);
+            let sum = self.terms.entry(variable).or_insert_with(BigRational::zero);
+            *sum += signed(c);
+            moderate(sum, place)?;
         }
+        Ok(())
     }
 
-    fn scaled(mut self, factor: &BigRational) -> Self {
-        self.constant *= factor;
-        self.terms.values_mut().for_each(|c| *c *= factor);
-        self
+    fn scaled(mut self, factor: &BigRational, place: Place) -> Result<Self, VnnlibError> {
+        for c in self.terms.values_mut().chain([&mut self.constant]) {
+            *c *= factor;
+            moderate(c, place)?;
+        }
+        Ok(self)
+    }
+}
+
+/// Refuses a number that is too long to be computed with.
+fn moderate(value: &BigRational, place: Place) -> Result<(), VnnlibError> {
+    if decimal::is_moderate(value) {
+        Ok(())
+    } else {
+        Err(place.error("comes to a number of more than 2¹⁶ bits".to_owned()))
     }
 }
 
 fn at_most(a: &Sexp<'_>, b: &Sexp<'_>, strict: bool, place: Place) -> Result<Atom, VnnlibError> {
     let mut difference = linear(a)?;
-    difference.add(linear(b)?, -1.0);
+    difference.add(linear(b)?, -1.0, place)?;
     let mut atom = Atom {
         inputs: Vec::new(),
         outputs: Vec::new(),
@@ -167,9 +186,10 @@ fn linear(expression: &Sexp<'_>) -> Result<Linear, VnnlibError> {
                 });
             }
             let constant = decimal::value(word).ok_or_else(|| {
-                let most = decimal::MOST_EXPONENT;
+                let most = decimal::MOST_DIGITS;
                 place.error(format!(
-                    "{word} is neither a variable nor a number with an exponent of at most {most}"
+                    "{word:.80} is neither a variable nor a number of at most {most} digits and with an \
+                     exponent of at most {most}"
                 ))
             })?;
             Ok(Linear {
@@ -178,11 +198,11 @@ fn linear(expression: &Sexp<'_>) -> Result<Linear, VnnlibError> {
             })
         }
         Sexp::List(items, _) => match items.as_slice() {
-            [Sexp::Word("+", _), parts @ ..] => sum(parts, 1.0),
-            [Sexp::Word("-", _), only] => sum(std::slice::from_ref(only), -1.0),
+            [Sexp::Word("+", _), parts @ ..] => sum(parts, 1.0, place),
+            [Sexp::Word("-", _), only] => sum(std::slice::from_ref(only), -1.0, place),
             [Sexp::Word("-", _), first, rest @ ..] => {
                 let mut total = linear(first)?;
-                total.add(sum(rest, 1.0)?, -1.0);
+                total.add(sum(rest, 1.0, place)?, -1.0, place)?;
                 Ok(total)
             }
             [Sexp::Word("*", _), first, rest @ ..] => {
@@ -196,18 +216,18 @@ fn linear(expression: &Sexp<'_>) -> Result<Linear, VnnlibError> {
     }
 }
 
-fn sum(parts: &[Sexp<'_>], sign: f64) -> Result<Linear, VnnlibError> {
+fn sum(parts: &[Sexp<'_>], sign: f64, place: Place) -> Result<Linear, VnnlibError> {
     let mut total = Linear::default();
     for part in parts {
-        total.add(linear(part)?, sign);
+        total.add(linear(part)?, sign, place)?;
     }
     Ok(total)
 }
 
 fn product(a: Linear, b: Linear, place: Place) -> Result<Linear, VnnlibError> {
     match (a.terms.is_empty(), b.terms.is_empty()) {
-        (true, _) => Ok(b.scaled(&a.constant)),
-        (_, true) => Ok(a.scaled(&b.constant)),
+        (true, _) => b.scaled(&a.constant, place),
+        (_, true) => a.scaled(&b.constant, place),
         _ => Err(place.error("a product of variables is not linear".to_owned())),
     }
 }
@@ -216,5 +236,5 @@ fn quotient(a: Linear, b: &Linear, place: Place) -> Result<Linear, VnnlibError> 
     if !b.terms.is_empty() || b.constant.is_zero() {
         return Err(place.error("only by constants other than 0".to_owned()));
     }
-    Ok(a.scaled(&b.constant.recip()))
+    a.scaled(&b.constant.recip(), place)
 }
