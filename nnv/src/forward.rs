@@ -2,7 +2,7 @@
 //! here is rounded soundly; what it finds is confirmed by [`Query::is_unsafe`](cede_nnv_check::Query::is_unsafe).
 
 use super::kernel::add_scaled;
-use super::propagation::Prepared;
+use super::propagation::{Prepared, Weights};
 use cede_nnv_check::Halfspace;
 use cede_nnv_check::{Activation, Network};
 
@@ -37,13 +37,17 @@ impl<'a> Runner<'a> {
             let from = before.last().map_or(input, Vec::as_slice);
             let sums = &mut rest[0];
             sums.copy_from_slice(&layer.bias);
-            for (&x, column) in from.iter().zip(
-                self.prepared.layers[index]
-                    .columns
-                    .chunks_exact(layer.outputs()),
-            ) {
-                if x != 0.0 {
-                    add_scaled(sums, column, x);
+            match &self.prepared.layers[index].weights {
+                Weights::Dense(columns) => {
+                    let columns = columns.chunks_exact(layer.outputs());
+                    for (&x, column) in from.iter().zip(columns).filter(|(x, _)| **x != 0.0) {
+                        add_scaled(sums, column, x);
+                    }
+                }
+                Weights::Sparse(rows) => {
+                    for (sum, row) in sums.iter_mut().zip(rows) {
+                        *sum += row.iter().map(|&(j, w)| w * from[j as usize]).sum::<f64>();
+                    }
                 }
             }
             match layer.activation {
@@ -59,7 +63,8 @@ impl<'a> Runner<'a> {
     pub(super) fn gradient(&mut self, atom: &Halfspace) -> &[f64] {
         self.gradient.clear();
         self.gradient.extend_from_slice(atom.coefficients());
-        for (layer, values) in self.network.layers().iter().zip(&self.values).rev() {
+        let layers = self.network.layers().iter().zip(&self.prepared.layers);
+        for ((layer, prepared), values) in layers.zip(&self.values).rev() {
             self.next.clear();
             self.next.resize(layer.inputs(), 0.0);
             for (i, (&g, &y)) in self.gradient.iter().zip(values).enumerate() {
@@ -69,8 +74,16 @@ impl<'a> Runner<'a> {
                     Activation::Relu => 0.0,
                     Activation::Tanh => g * (1.0 - y * y),
                 };
-                if g != 0.0 {
-                    add_scaled(&mut self.next, layer.weights.row(i), g);
+                if g == 0.0 {
+                    continue;
+                }
+                match &prepared.weights {
+                    Weights::Dense(_) => add_scaled(&mut self.next, layer.weights.row(i), g),
+                    Weights::Sparse(rows) => {
+                        for &(j, w) in &rows[i] {
+                            self.next[j as usize] += g * w;
+                        }
+                    }
                 }
             }
             std::mem::swap(&mut self.gradient, &mut self.next);

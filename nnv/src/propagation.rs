@@ -1,12 +1,13 @@
 //! Sound bounds for every neuron and for the atoms of a query on a box, layer by layer.
 
+mod composition;
 mod prepared;
 
-use super::kernel::{LANES, Lane, compose, padded};
+use super::kernel::{LANES, Lane, padded};
 use super::relaxation::{Lines, Symbols};
 use cede_nnv_check::rounding::{SPARE, underflow};
 use cede_nnv_check::{Activation, AffineEnclosure, InputBox};
-pub(crate) use prepared::{Prepared, PreparedLayer};
+pub(crate) use prepared::{Prepared, PreparedLayer, Weights};
 use std::time::Instant;
 
 /// Least and greatest value of a pre-activation.
@@ -35,6 +36,17 @@ struct Forms {
     sizes: Vec<f64>,
 }
 
+/// What stands for a neuron's output.
+#[derive(Clone, Copy)]
+enum Place {
+    /// Nothing: it is 0.
+    Off,
+    /// A form of the layer before, by lane.
+    Active(usize),
+    /// A symbol, by column.
+    Direct(usize),
+}
+
 /// All the memory that bounding a box takes, kept between boxes.
 #[derive(Default)]
 pub(super) struct Workspace {
@@ -51,6 +63,10 @@ pub(super) struct Workspace {
     active: Vec<usize>,
     compact_rows: Vec<f64>,
     compact_weights: Vec<f64>,
+    /// Where each neuron of the layer before is, and the products of a sparse layer: lane, lane of
+    /// the layer before, weight.
+    places: Vec<Place>,
+    products: Vec<(usize, usize, f64)>,
     block: Vec<Lane>,
     open: Vec<usize>,
 }
@@ -141,102 +157,6 @@ impl Workspace {
             enclosure.affine_range(region),
             Lines::enclosure(enclosure, region),
         )
-    }
-
-    /// The forms of the wanted neurons of a layer from those of the layer before.
-    #[inline(always)]
-    fn compose_layer(
-        &mut self,
-        layer: &PreparedLayer,
-        deadline: Option<Instant>,
-    ) -> Result<(), Unbounded> {
-        let (wanted, active) = (self.forms.neurons.len(), self.active.len());
-        let lanes = padded(wanted);
-        let columns = self.symbols.columns();
-        let before = if active == 0 {
-            0
-        } else {
-            self.previous.coefficients.len() / padded(self.previous.neurons.len())
-        };
-
-        self.compact_weights.clear();
-        for &lane in &self.active {
-            let weights =
-                &layer.columns[self.previous.neurons[lane] * layer.outputs..][..layer.outputs];
-            self.compact_weights
-                .extend(self.forms.neurons.iter().map(|&i| weights[i]));
-            self.compact_weights
-                .resize(self.compact_weights.len() + lanes - wanted, 0.0);
-        }
-        self.compact_rows.clear();
-        let stride = padded(self.previous.neurons.len());
-        for column in 0..before {
-            let row = &self.previous.coefficients[column * stride..(column + 1) * stride];
-            self.compact_rows
-                .extend(self.active.iter().map(|&lane| row[lane]));
-        }
-
-        let z = &mut self.forms.coefficients;
-        z.clear();
-        z.resize(columns * lanes, 0.0);
-        if lanes == 0 {
-            return Ok(());
-        }
-        let group = (PRODUCTS_AT_A_TIME / (active * lanes + 1)).next_multiple_of(4);
-        for first in (0..before).step_by(group) {
-            in_time(deadline)?;
-            let last = before.min(first + group);
-            compose(
-                &self.compact_rows[first * active..last * active],
-                &self.compact_weights,
-                active,
-                lanes,
-                &mut z[first * lanes..last * lanes],
-            );
-        }
-        let errors = &mut self.forms.errors;
-        errors.clear();
-        let values = self.active.iter().map(|&lane| self.previous.sizes[lane]);
-        let values = underflow(1, values.sum::<f64>() * SPARE);
-        let products = 4 * (active + self.direct.len());
-        errors.resize(lanes, self.symbols.underflow(products) + values);
-        for (&lane, weights) in self
-            .active
-            .iter()
-            .zip(self.compact_weights.chunks_exact(lanes))
-        {
-            let carried = self.previous.errors[lane] * (1.0 + 1e-9)
-                + (layer.relative_error + layer.uncertainty) * self.previous.sizes[lane]
-                + underflow(4, 1.0);
-            for (error, w) in errors.iter_mut().zip(weights) {
-                *error += w.abs() * carried;
-            }
-        }
-        for &(neuron, column) in &self.direct {
-            let weights = &layer.columns[neuron * layer.outputs..][..layer.outputs];
-            let uncertain = layer.uncertainty * self.symbols.most()[column] + underflow(2, 1.0);
-            for (lane, &i) in self.forms.neurons.iter().enumerate() {
-                z[column * lanes + lane] = weights[i];
-                errors[lane] += weights[i].abs() * uncertain;
-            }
-        }
-        for (lane, &i) in self.forms.neurons.iter().enumerate() {
-            z[lane] += layer.bias[i];
-            let of_bias = (layer.relative_error + layer.uncertainty) * layer.bias[i].abs();
-            errors[lane] = (errors[lane] + of_bias) * SPARE;
-        }
-        let sizes = &mut self.forms.sizes;
-        sizes.clear();
-        sizes.resize(lanes, underflow(columns, 1.0));
-        for (row, &most) in z.chunks_exact(lanes).zip(self.symbols.most()) {
-            for (size, c) in sizes.iter_mut().zip(row) {
-                *size += c.abs() * most;
-            }
-        }
-        for size in sizes {
-            *size *= SPARE;
-        }
-        Ok(())
     }
 
     /// Bounds the neurons of the layer that are not known to be stable.
@@ -372,9 +292,6 @@ impl Workspace {
         (self.forms.errors[k], self.forms.sizes[k])
     }
 }
-
-/// Products that are taken between two looks at the clock.
-const PRODUCTS_AT_A_TIME: usize = 1 << 26;
 
 /// Fails after the deadline.
 pub(super) fn in_time(deadline: Option<Instant>) -> Result<(), Unbounded> {

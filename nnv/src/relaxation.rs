@@ -224,6 +224,9 @@ impl Symbols {
     pub(super) fn substitute(&self, block: &mut [Lane], errors: &mut Lane) {
         for symbol in (0..self.count()).rev() {
             let coefficients = block[self.fixed + symbol];
+            if coefficients == [0.0; LANES] {
+                continue;
+            }
             let lines = &self.lines[symbol];
             let (per_factor, per_coefficient) = self.costs(symbol);
             let mut factors = [0.0; LANES];
