@@ -9,6 +9,7 @@ mod certificate;
 pub mod check;
 mod dyadic;
 mod enclosure;
+mod gzip;
 mod interval;
 mod model;
 pub mod onnx;

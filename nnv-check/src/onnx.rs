@@ -6,6 +6,7 @@
 
 mod affine;
 
+use crate::gzip;
 use crate::model::{Activation, ModelError, Network};
 use crate::rounding::exact_product;
 use affine::{Builder, Variable};
@@ -23,14 +24,15 @@ pub enum OnnxError {
     Model(#[from] ModelError),
 }
 
-/// Reads a network. Never panics on any bytes; memory is bounded by a small multiple of the file's
-/// size and of the largest layer (at most 2²⁶ weights).
+/// Reads a network, packed with gzip or not. Never panics on any bytes; memory is bounded by a small multiple of the file's
+/// size, unpacked (at most 2³⁰ bytes), and of the largest layer (at most 2²⁶ weights).
 ///
 /// # Errors
 /// If the bytes are not an ONNX model, or the graph is more than a feed-forward chain: the first
 /// offending node and operator are named.
 pub fn read(bytes: &[u8]) -> Result<Network, OnnxError> {
-    network(&graph::read(bytes)?)
+    let bytes = gzip::unpacked(bytes).map_err(|e| GraphError::Encoding(e.to_string()))?;
+    network(&graph::read(&bytes)?)
 }
 
 fn network(graph: &Graph) -> Result<Network, OnnxError> {

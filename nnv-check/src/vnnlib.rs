@@ -8,8 +8,8 @@ mod decimal;
 mod expression;
 mod lexer;
 
-use super::dyadic;
 use super::property::{Conjunction, Halfspace, InputBox, Limit, Property, Query};
+use super::{dyadic, gzip};
 use expression::{Atom, Formula};
 use num_rational::BigRational;
 use num_traits::{Signed as _, Zero as _};
@@ -77,11 +77,17 @@ pub fn read(text: &str) -> Result<Property, VnnlibError> {
     })
 }
 
-/// [`read`] from the bytes of a file.
+/// [`read`] from the bytes of a file, packed with gzip or not.
 ///
 /// # Errors
 /// As [`read`], and if the bytes are not UTF-8.
 pub fn read_bytes(bytes: &[u8]) -> Result<Property, VnnlibError> {
+    let fault = |what| VnnlibError {
+        line: 1,
+        column: 1,
+        what,
+    };
+    let bytes = &gzip::unpacked(bytes).map_err(|e| fault(format!("not a gzip file: {e}")))?;
     let text = std::str::from_utf8(bytes).map_err(|e| VnnlibError {
         line: 1 + bytes[..e.valid_up_to()]
             .iter()

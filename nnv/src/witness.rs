@@ -64,8 +64,8 @@ pub(super) fn is_near(conjunction: &Conjunction, y: &[f64]) -> bool {
     conjunction.iter().all(|atom| {
         let terms = atom.coefficients().iter().zip(y);
         let size = terms.map(|(c, y)| (c * y).abs()).sum::<f64>() + atom.bound().abs();
-        // NaN may be anything.
-        !(atom.excess(y) > 1e-9 * size)
+        let excess = atom.excess(y);
+        excess <= 1e-9 * size || !(excess - size).is_finite()
     })
 }
 

@@ -6,7 +6,7 @@ use cede_data::output;
 use cede_nnv::{self as verifier, Answer, Branching, Report, SearchOptions};
 use cede_nnv_check::{self as trusted, Certificate, Source};
 use clap::{Args, ValueEnum};
-use miette::{IntoDiagnostic, WrapErr, miette};
+use miette::{IntoDiagnostic, miette};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
