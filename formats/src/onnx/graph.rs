@@ -1,14 +1,17 @@
 //! The one reader of ONNX graphs: what a graph computes, as a list of a few typed operations.
 //!
-//! Understood: Gemm, MatMul, Add, Sub, Mul and Div with constants, Relu, Tanh, Clip, Flatten,
-//! Reshape, Transpose, Squeeze, Unsqueeze, Identity, Dropout, Constant, Concat; `f32` and `f64`
-//! tensors, raw or typed. A symbolic dimension (a batch) counts as 1. Shapes are checked, constants
+//! Understood: Gemm, MatMul and Conv with constants; Add and Sub; Mul and Div with constants; Relu,
+//! LeakyRelu, Sigmoid, Tanh, Clip; MaxPool, AveragePool, GlobalAveragePool, BatchNormalization;
+//! Flatten, Reshape, Transpose, Squeeze, Unsqueeze, Concat, Slice, Split, Gather, Identity, Dropout,
+//! Constant; `f32` and `f64` tensors, raw or typed. A symbolic dimension (a batch) counts as 1. Shapes are checked, constants
 //! are resolved and moved, and nothing is computed: every number of the file keeps its exact value.
 
 mod arguments;
 mod elementwise;
 mod linear;
 mod moves;
+mod parts;
+mod windows;
 
 use super::proto;
 use super::shape::{MOST_ELEMENTS, MOST_WEIGHTS, Shape};
@@ -51,7 +54,7 @@ pub struct Step {
     pub node: String,
     /// The node's operator.
     pub operator: String,
-    /// The values that it takes, by number: one, but for [`Operation::Join`].
+    /// The values that it takes, by number: one, but for [`Operation::Join`] and [`Operation::Sum`].
     pub from: Vec<usize>,
     /// What is computed.
     pub operation: Operation,
@@ -92,6 +95,25 @@ pub enum Operation {
     Divide(Vec<f64>),
     /// A matrix product with a constant.
     Linear(Linear),
+    /// Two values of one size: the first plus a sign times the second.
+    Sum {
+        /// 1 or −1.
+        sign: f64,
+    },
+    /// x divided by a number greater than 0 for each element, which is within 4 units in the last
+    /// place of the given one.
+    DivideNearly(Vec<f64>),
+    /// A sum of elements, each times a number, for each element of the result.
+    Map(Vec<Vec<(usize, f64)>>),
+    /// The largest of some elements, for each element of the result.
+    Largest(Vec<Vec<usize>>),
+    /// max(0, x) + slope·min(0, x).
+    LeakyRelu {
+        /// The slope below 0.
+        slope: f64,
+    },
+    /// 1 / (1 + e⁻ˣ).
+    Sigmoid,
     /// max(0, x).
     Relu,
     /// tanh x.
@@ -178,19 +200,24 @@ pub fn read(bytes: &[u8]) -> Result<Graph, GraphError> {
             operator: node.op_type.clone(),
             what,
         };
-        let output = node
-            .output
-            .first()
-            .ok_or_else(|| fault("gives nothing".to_owned()))?;
+        if node.output.is_empty() {
+            return Err(fault("gives nothing".to_owned()));
+        }
         let arguments = Arguments::new(node, &values);
-        let value = apply(&arguments, &mut recorder).map_err(fault)?;
-        let size = value.shape().size();
-        let charged = match value {
-            Value::Constant(_) => recorder.charge_constant(size),
-            Value::Variable(_) => recorder.charge(size),
+        let given = if node.op_type == "Split" {
+            parts::split(&arguments, &mut recorder)
+        } else {
+            apply(&arguments, &mut recorder).map(|value| vec![value])
         };
-        charged.map_err(fault)?;
-        values.insert(output, value);
+        for (output, value) in node.output.iter().zip(given.map_err(fault)?) {
+            let size = value.shape().size();
+            let charged = match value {
+                Value::Constant(_) => recorder.charge_constant(size),
+                Value::Variable(_) => recorder.charge(size),
+            };
+            charged.map_err(fault)?;
+            values.insert(output, value);
+        }
     }
     let output = output(&graph, &values)?;
     let input = |(name, shape): (&str, Shape)| Input {
@@ -317,6 +344,15 @@ fn apply(arguments: &Arguments<'_>, recorder: &mut Recorder) -> Result<Value, St
         "Identity" | "Dropout" => arguments.value(0).cloned(),
         "Relu" => elementwise::activation(arguments, recorder, Operation::Relu),
         "Tanh" => elementwise::activation(arguments, recorder, Operation::Tanh),
+        "Sigmoid" => elementwise::activation(arguments, recorder, Operation::Sigmoid),
+        "LeakyRelu" => {
+            let slope = arguments.attribute("alpha").map_or(0.01_f32, |a| a.f);
+            if !slope.is_finite() {
+                return Err("alpha is not finite".to_owned());
+            }
+            let slope = f64::from(slope);
+            elementwise::activation(arguments, recorder, Operation::LeakyRelu { slope })
+        }
         "Clip" => elementwise::clip(arguments, recorder),
         "Add" => elementwise::sum(arguments, recorder, 1.0),
         "Sub" => elementwise::sum(arguments, recorder, -1.0),
@@ -328,14 +364,22 @@ fn apply(arguments: &Arguments<'_>, recorder: &mut Recorder) -> Result<Value, St
         "Unsqueeze" => moves::unsqueeze(arguments),
         "Transpose" => moves::transpose(arguments, recorder),
         "Concat" => moves::concat(arguments, recorder),
+        "Slice" => parts::slice(arguments, recorder),
+        "Gather" => parts::gather(arguments, recorder),
+        "Conv" => windows::convolution(arguments, recorder),
+        "MaxPool" => windows::max_pool(arguments, recorder),
+        "AveragePool" => windows::average_pool(arguments, recorder, false),
+        "GlobalAveragePool" => windows::average_pool(arguments, recorder, true),
+        "BatchNormalization" => windows::normalisation(arguments, recorder),
         "MatMul" => linear::matmul(arguments, recorder),
         "Gemm" => linear::gemm(arguments, recorder),
         _ => Err(format!("is not supported; supported are {OPERATORS}")),
     }
 }
 
-const OPERATORS: &str = "Gemm, MatMul, Add, Sub, Mul, Div, Relu, Tanh, Clip, Flatten, Reshape, \
-    Transpose, Squeeze, Unsqueeze, Concat, Identity, Dropout and Constant";
+const OPERATORS: &str = "Gemm, MatMul, Conv, Add, Sub, Mul, Div, Relu, LeakyRelu, Sigmoid, Tanh, Clip, \
+    MaxPool, AveragePool, GlobalAveragePool, BatchNormalization, Flatten, Reshape, Transpose, Squeeze, \
+    Unsqueeze, Concat, Slice, Split, Gather, Identity, Dropout and Constant";
 
 /// The graph's inputs that are not initialisers, with their shapes.
 fn inputs<'a>(

@@ -56,6 +56,14 @@ impl<'a> Arguments<'a> {
         self.node.attribute(name)
     }
 
+    /// A text; empty if there is none.
+    pub(super) fn text(&self, name: &str) -> &'a str {
+        let text = self
+            .attribute(name)
+            .map_or(&[][..], |attribute| &attribute.s);
+        std::str::from_utf8(text).unwrap_or_default()
+    }
+
     pub(super) fn integer(&self, name: &str, otherwise: i64) -> i64 {
         self.attribute(name)
             .map_or(otherwise, |attribute| attribute.i)
