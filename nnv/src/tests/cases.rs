@@ -261,7 +261,8 @@ impl Case {
                 outputs,
             });
         }
-        let onnx = onnx(&problem, single);
+        let forms: Vec<usize> = problem.layers.iter().map(|_| source.below(FORMS)).collect();
+        let onnx = onnx(&problem, single, &forms);
         let vnnlib = vnnlib(&problem, &mut source);
         Self {
             problem,
@@ -271,8 +272,11 @@ impl Case {
     }
 }
 
-/// The network as an ONNX file, in `f32` or `f64`.
-pub(super) fn onnx(problem: &Problem, single: bool) -> Vec<u8> {
+/// Ways to write a layer.
+const FORMS: usize = 5;
+
+/// The network as an ONNX file, in `f32` or `f64`, each layer written in one of several ways.
+pub(super) fn onnx(problem: &Problem, single: bool, forms: &[usize]) -> Vec<u8> {
     let tensor = |name: String, dims: Vec<i64>, values: Vec<f64>| {
         let raw_data = if single {
             values
@@ -339,9 +343,42 @@ pub(super) fn onnx(problem: &Problem, single: bool) -> Vec<u8> {
         graph
             .node
             .push(node("Add", vec![format!("m{i}"), bias], last.clone()));
+        let form = forms.get(i).copied().unwrap_or(0);
+        if form == 1 {
+            // Twice the value less the value: two branches.
+            let (twice, same) = (format!("t{i}"), format!("s{i}"));
+            let sum = node("Add", vec![last.clone(), last.clone()], twice.clone());
+            let difference = node("Sub", vec![twice, last], same.clone());
+            graph.node.extend([sum, difference]);
+            last = same;
+        }
         if layer.relu {
-            graph.node.push(node("Relu", vec![last], format!("r{i}")));
-            last = format!("r{i}");
+            let output = format!("r{i}");
+            let activation = match form {
+                2 => {
+                    let mut leaky = node("LeakyRelu", vec![last], output.clone());
+                    leaky.attribute = vec![proto::Attribute {
+                        name: "alpha".to_owned(),
+                        f: 0.0,
+                        ..proto::Attribute::default()
+                    }];
+                    vec![leaky]
+                }
+                // relu(z) = z + relu(−z): a connection that skips a layer.
+                3 => {
+                    let (minus, below) = (format!("n{i}"), format!("d{i}"));
+                    let one = tensor(format!("o{i}"), Vec::new(), vec![-1.0]);
+                    graph.initializer.push(one);
+                    vec![
+                        node("Mul", vec![last.clone(), format!("o{i}")], minus.clone()),
+                        node("Relu", vec![minus], below.clone()),
+                        node("Add", vec![last, below], output.clone()),
+                    ]
+                }
+                _ => vec![node("Relu", vec![last], output.clone())],
+            };
+            graph.node.extend(activation);
+            last = output;
         }
     }
     graph.output = vec![value(&last, problem.outputs())];

@@ -21,7 +21,7 @@ fn network(inputs: usize, layers: &[(&[&[f64]], &[f64])]) -> Network {
         layers: layers.iter().enumerate().map(layer).collect(),
         clauses: Vec::new(),
     };
-    onnx::read(&cases::onnx(&problem, false)).expect("a supported network")
+    onnx::read(&cases::onnx(&problem, false, &[])).expect("a supported network")
 }
 
 /// y = x.
