@@ -83,17 +83,15 @@ impl Interval {
     pub(crate) fn add_scaled(self, sums: &mut [Self], row: &[f64]) {
         debug_assert!(self.is_known());
         for (sum, &w) in sums.iter_mut().zip(row) {
-            if w == 0.0 {
-                continue;
-            }
-            let (low, high) = if w > 0.0 {
-                (self.lo * w, self.hi * w)
-            } else {
-                (self.hi * w, self.lo * w)
-            };
+            let (one, other) = (self.lo * w, self.hi * w);
+            let (low, high) = if w < 0.0 { (other, one) } else { (one, other) };
             let (lo, hi) = (sum.lo + low, sum.hi + high);
-            sum.lo = lo - slack(low.abs() + lo.abs());
-            sum.hi = hi + slack(high.abs() + hi.abs());
+            // Nothing is added where the weight is 0; chosen at the end, so that the loop has no branch.
+            let exact = w == 0.0;
+            let below = lo - slack(low.abs() + lo.abs());
+            let above = hi + slack(high.abs() + hi.abs());
+            sum.lo = if exact { sum.lo } else { below };
+            sum.hi = if exact { sum.hi } else { above };
         }
     }
 }

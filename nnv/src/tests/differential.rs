@@ -6,9 +6,12 @@
 use super::cases::Case;
 use crate::propagation::Prepared;
 use crate::relaxation::Lines;
-use crate::{Answer, SearchOptions, verify_prepared};
+use crate::{Answer, Branching, SearchOptions, verify, verify_prepared};
 use cede_nnv_check::proof::{Cell, Proof, Refutation};
-use cede_nnv_check::{Certificate, Network, Property, Source, check, onnx, vnnlib};
+use cede_nnv_check::{
+    Activation, Certificate, Halfspace, InputBox, Layer, Matrix, Network, Property, Query, Source,
+    check, onnx, vnnlib,
+};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
@@ -69,7 +72,11 @@ fn one(seed: u64, fault: Fault) -> Tally {
         }
     };
     let truth = case.problem.has_solution();
-    let options = SearchOptions::default().seed(seed).record(true);
+    let ways = [Branching::Auto, Branching::Inputs, Branching::Phases];
+    let options = SearchOptions::default()
+        .seed(seed)
+        .branching(ways[(seed % 3) as usize])
+        .record(true);
     let deadline = Instant::now() + Duration::from_millis(40);
     let mut prepared = Prepared::new(&network, &[]);
     (fault.bounds)(&mut prepared);
@@ -146,6 +153,80 @@ fn differential() {
     assert!(tally.wrong.is_empty(), "{:#?}", tally.wrong);
     let settled = f64::from(sat + unsat) / count as f64;
     assert!(settled > 0.9, "only {settled} of the networks are settled");
+}
+
+/// Networks too wide for the oracle, with weights of very different sizes; thresholds are near what
+/// sampling finds, so that proofs have many regions.
+#[test]
+fn the_provers_own_certificates_are_never_refused() {
+    let count = from_environment("CEDE_NETWORKS", 1000).div_ceil(10);
+    let all: Vec<(u32, Option<String>)> = (0..count).into_par_iter().map(refused).collect();
+    let checked: u32 = all.iter().map(|(checked, _)| checked).sum();
+    let refused: Vec<_> = all.iter().filter_map(|(_, what)| what.as_ref()).collect();
+    println!(
+        "{checked} certificates of {count} networks, {} refused",
+        refused.len()
+    );
+    assert!(refused.is_empty(), "{refused:#?}");
+}
+
+/// How many certificates for a network were checked, and why one was refused.
+fn refused(seed: u64) -> (u32, Option<String>) {
+    let mut random = Pcg64::seed_from_u64(seed);
+    let widths = [3, 7, 7, 1];
+    let exponents = [0, 6, 30, 90][random.random_range(0..4)];
+    let mut number = || {
+        let exponent = random.random_range(-exponents..=exponents);
+        (2.0 * random.random::<f64>() - 1.0) * 10_f64.powi(exponent)
+    };
+    let mut layers = Vec::new();
+    for (index, pair) in widths.windows(2).enumerate() {
+        let weights = (0..pair[0] * pair[1]).map(|_| number()).collect();
+        layers.push(Layer {
+            weights: Matrix::from_rows(pair[1], pair[0], weights).expect("sizes fit"),
+            bias: (0..pair[1]).map(|_| number()).collect(),
+            activation: if index + 2 < widths.len() {
+                Activation::Relu
+            } else {
+                Activation::Identity
+            },
+            uncertainty: 0.0,
+        });
+    }
+    let network = Network::new(3, layers).expect("layers fit");
+    let region = InputBox {
+        lower: vec![-1.0; 3],
+        upper: vec![1.0; 3],
+    };
+    let mut point = || -> Vec<f64> { (0..3).map(|_| 2.0 * random.random::<f64>() - 1.0).collect() };
+    let sampled = (0..200).map(|_| network.run(&point()).values[0]);
+    let most = sampled.fold(f64::NEG_INFINITY, f64::max);
+    let mut checked = 0;
+    for (way, above) in [
+        (Branching::Inputs, 0.3),
+        (Branching::Phases, 0.3),
+        (Branching::Auto, 0.01),
+    ] {
+        let options = SearchOptions::default()
+            .timeout(Duration::from_millis(100))
+            .branching(way)
+            .record(true);
+        let atom = Halfspace::new(vec![-1.0], -(most + above * most.abs()));
+        let property = Property {
+            inputs: 3,
+            outputs: 1,
+            queries: vec![Query::new(region.clone(), vec![vec![atom]])],
+        };
+        let report = verify(&network, &property, options).expect("they fit");
+        if report.answer != Answer::Unsat {
+            continue;
+        }
+        checked += 1;
+        if let Err(error) = check::check(&network, &property.queries[0], &report.proofs[0]) {
+            return (checked, Some(format!("seed {seed}, {way:?}: {error}")));
+        }
+    }
+    (checked, None)
 }
 
 #[test]
