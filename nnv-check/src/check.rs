@@ -8,7 +8,7 @@
 //!
 //! The pass is written once, for intervals rounded outward and for exact numbers. Where intervals
 //! leave a recorded refutation open, exact numbers decide; where those do, too, it halves the box
-//! itself, a few times at most.
+//! itself, a number of times at most.
 
 mod bounds;
 mod number;
@@ -61,8 +61,9 @@ pub enum CheckError {
     },
 }
 
-/// How often a box may be halved in the attempt to confirm a refutation.
-const HALVINGS: u32 = 6;
+/// How often a box may be halved in the attempt to confirm a refutation, and how many boxes.
+const HALVINGS: u32 = 30;
+const MOST_HALVES: u32 = 1000;
 /// Products of large integers that an exact pass may take.
 const MOST_EXACT: usize = 1 << 20;
 /// Bits of the common denominator of a box's exact limits.
@@ -180,6 +181,36 @@ pub fn refutes_exactly(
         .is_some_and(|_| subject.refutes_exactly(region, &phases, None, claim))
 }
 
+/// Whether [`check`] will confirm a claim on this part of the query's box, whatever else it knows of
+/// it; without a claim, that the region is empty. `None` for networks so large that to ask takes
+/// long.
+#[must_use]
+pub fn confirms(
+    network: &Network,
+    query: &Query,
+    region: &InputBox,
+    phases: &[(u32, bool)],
+    claim: Option<&Refutation>,
+) -> Option<bool> {
+    let subject = Subject {
+        network,
+        inputs: None,
+        query,
+    };
+    let phases: Vec<_> = phases.iter().map(|&(n, on)| (n as usize, on)).collect();
+    let moderate = subject.products() <= MOST_EXACT;
+    moderate.then(|| subject.confirms(region, &phases, claim.unwrap_or(&NOTHING)))
+}
+
+/// A claim that refutes nothing but an empty region.
+const NOTHING: Refutation = Refutation {
+    conjunction: 0,
+    weights: Vec::new(),
+    multipliers: Vec::new(),
+    slopes: Vec::new(),
+    bound: 0.0,
+};
+
 /// Whether a claim's numbers are such that it proves something.
 fn fits(claim: &Refutation, conjunction: &[Halfspace]) -> bool {
     let multipliers = claim.multipliers.iter().map(|(_, m)| m);
@@ -250,15 +281,33 @@ impl Subject<'_> {
         Bounds::new(self.network, sides, scale, None)
     }
 
-    /// Whether exact numbers can decide, and in reasonable time.
-    fn is_exact(&self) -> bool {
+    /// Products that a pass over all neurons takes.
+    fn products(&self) -> usize {
         let mut behind = 0;
         let mut products = 0_usize;
         for layer in self.network.layers() {
             products = products.saturating_add(layer.outputs().saturating_mul(behind));
             behind += layer.weights.data().len();
         }
-        self.inputs.is_none() && self.network.is_exact() && products <= MOST_EXACT
+        products
+    }
+
+    /// Whether exact numbers can decide, and in reasonable time.
+    fn is_exact(&self) -> bool {
+        self.inputs.is_none() && self.network.is_exact() && self.products() <= MOST_EXACT
+    }
+
+    /// Whether the claim holds by what a pass over this region alone shows.
+    fn confirms(&self, region: &InputBox, phases: &[(usize, bool)], claim: &Refutation) -> bool {
+        let mut bounds = self.bounds(region);
+        for &(neuron, on) in phases {
+            if assume(self.network, &mut bounds.layers, neuron, on).is_none() {
+                return false;
+            }
+        }
+        !bounds.tighten()
+            || self.contradicts(&bounds, phases, claim).is_ok()
+            || self.refutes_exactly(region, phases, None, claim)
     }
 
     /// See [`refutes_exactly`]; what is `known` of the neurons may help.
@@ -407,10 +456,12 @@ impl<'a> Region<'a> {
             return Ok(true);
         };
         if cell.empty {
-            return if self.is_exactly_empty() {
-                Ok(true)
-            } else {
+            let conjunctions = &self.subject.query.unsafe_set;
+            let empty = |room| self.confirm(&bounds, &NOTHING, HALVINGS, room).is_ok();
+            return if conjunctions.is_empty() || !empty(&mut { MOST_HALVES }) {
                 Err(malformed(self.cell, "is said to be empty, but is not"))
+            } else {
+                Ok(true)
             };
         }
         for claim in &cell.refuted {
@@ -422,58 +473,47 @@ impl<'a> Region<'a> {
             if !conjunction.is_some_and(|c| fits(claim, c)) {
                 return Err(malformed(self.cell, "has a refutation that does not fit"));
             }
-            self.confirm(&bounds, claim, HALVINGS)?;
+            self.confirm(&bounds, claim, HALVINGS, &mut { MOST_HALVES })?;
             self.open.retain(|&c| c != claim.conjunction);
         }
         Ok(self.open.is_empty())
     }
 
-    /// Whether exact bounds contradict each other.
-    fn is_exactly_empty(&self) -> bool {
-        // A claim without weights refutes nothing but an empty region.
-        let nothing = Refutation {
-            conjunction: 0,
-            weights: Vec::new(),
-            multipliers: Vec::new(),
-            slopes: Vec::new(),
-            bound: 0.0,
-        };
-        !self.subject.query.unsafe_set.is_empty() && self.refutes_exactly(&nothing)
-    }
-
-    fn refutes_exactly(&self, claim: &Refutation) -> bool {
-        let with = |known| {
-            self.subject
-                .refutes_exactly(&self.region, &self.phases, known, claim)
-        };
-        // Tighter bounds may choose other slopes, which need not be better.
-        with(Some(&self.known)) || with(None)
-    }
-
-    /// Confirms a refutation, on the halves of the box if not on the whole.
+    /// Confirms a refutation, on the halves of the box if not on the whole: so deep at most, and so
+    /// many in all.
     fn confirm(
         &self,
         bounds: &Bounds<'_, Interval>,
         claim: &Refutation,
         halvings: u32,
+        room: &mut u32,
     ) -> Result<(), CheckError> {
         let Err(bound) = self.subject.contradicts(bounds, &self.phases, claim) else {
             return Ok(());
         };
-        if self.refutes_exactly(claim) {
+        let Self {
+            subject,
+            region,
+            known,
+            phases,
+            ..
+        } = self;
+        // Tighter bounds come to other slopes, which need not be better.
+        if subject.refutes_exactly(region, phases, Some(known), claim)
+            || subject.confirms(region, phases, claim)
+        {
             return Ok(());
         }
-        let InputBox { lower, upper } = &self.region;
-        let widest = (0..lower.len())
-            .max_by(|&a, &b| (upper[a] - lower[a]).total_cmp(&(upper[b] - lower[b])));
-        let (Some(input), true) = (widest, halvings > 0) else {
+        let (Some(input), true, Some(left)) = (self.widest(), halvings > 0, room.checked_sub(1))
+        else {
             return Err(CheckError::Unsound {
                 cell: self.cell,
                 conjunction: claim.conjunction,
                 bound: bound.map_or(f64::NEG_INFINITY, |b| b.lo),
             });
         };
-        let at = f64::midpoint(lower[input], upper[input]);
+        *room = left;
+        let at = f64::midpoint(self.region.lower[input], self.region.upper[input]);
         for above in [false, true] {
             let mut half = self.clone();
             let side = if above {
@@ -483,10 +523,22 @@ impl<'a> Region<'a> {
             };
             side[input] = at;
             if let Some(bounds) = half.tighten() {
-                half.confirm(&bounds, claim, halvings - 1)?;
+                half.confirm(&bounds, claim, halvings - 1, room)?;
             }
         }
         Ok(())
+    }
+
+    /// The input whose side is the longest, compared with that of the query's box.
+    fn widest(&self) -> Option<usize> {
+        let InputBox { lower, upper } = &self.region;
+        let whole = &self.subject.query.region;
+        let share = |&i: &usize| {
+            let share = (upper[i] - lower[i]) / (whole.upper[i] - whole.lower[i]);
+            // A side without length, or of infinite length.
+            if share.is_nan() { 0.0 } else { share }
+        };
+        (0..lower.len()).max_by(|a, b| share(a).total_cmp(&share(b)))
     }
 
     /// The two parts of the region that a split makes.

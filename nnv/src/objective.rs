@@ -345,10 +345,11 @@ impl Ascent {
         bound: f64,
     ) -> Refutation {
         let symbols = &workspace.symbols;
-        // Where the usual slope is a near thing, others may come to another.
+        // Where rounding may decide which slope is the usual one, others may come to another.
         let unusual = |&s: &usize| {
             let (lines, (l, u)) = (symbols.lines(s), symbols.interval(s));
-            self.slopes[s] != lines.lower_slope || lines.free && (l + u).abs() <= 1e-6 * (u - l)
+            let doubt = 1e-6 * (u - l) + 1e6 * symbols.costs(s).0;
+            self.slopes[s] != lines.lower_slope || lines.free && (l + u).abs() <= doubt
         };
         let (weights, multipliers) = self.weights.split_at(self.atoms);
         let assumed = workspace.assumed.iter().zip(multipliers);

@@ -16,7 +16,7 @@ use super::objective::Ascent;
 use super::propagation::{Prepared, Unbounded, Workspace, is_unstable};
 use super::witness::{Witness, is_near};
 use super::{Branching, SearchOptions};
-use cede_nnv_check::check::refutes_exactly;
+use cede_nnv_check::check::{confirms, refutes_exactly};
 use cede_nnv_check::proof::{Cell, Proof, Refutation, Split};
 use cede_nnv_check::{Halfspace, InputBox, Network, Query};
 use node::{Node, split_input, split_phase};
@@ -321,6 +321,8 @@ impl<'a> Searcher<'a> {
             .iter()
             .flat_map(|&c| problem.atoms_of(c))
             .collect();
+        let record = problem.options.record;
+        let before = (record && !node.phases.is_empty()).then(|| node.bounds.clone());
         let bounded = self.workspace.bound(
             &problem.prepared,
             &node.region,
@@ -334,6 +336,13 @@ impl<'a> Searcher<'a> {
             Ok(()) => {}
             Err(Unbounded::Late) => return Err(Late),
             Err(Unbounded::Empty) => {
+                if let Some(before) = before
+                    && !self.is_confirmed(&node, None)
+                {
+                    node.bounds = before;
+                    let halves = split_input(node, &[]);
+                    return Ok(halves.map_or(Step::Stuck, |(split, two)| Step::Split(split, two)));
+                }
                 cell.empty = true;
                 return Ok(Step::Refuted);
             }
@@ -366,11 +375,14 @@ impl<'a> Searcher<'a> {
                 }
             }
             if bound > 0.0 {
-                if problem.options.record {
-                    cell.refuted
-                        .push(self.ascent.refutation(&self.workspace, conjunction, bound));
+                if !record {
+                    continue;
                 }
-                continue;
+                let claim = self.ascent.refutation(&self.workspace, conjunction, bound);
+                if self.is_confirmed(&node, Some(&claim)) {
+                    cell.refuted.push(claim);
+                    continue;
+                }
             }
             let set = &problem.query.unsafe_set[conjunction as usize];
             if is_near(set, self.runner.run(&candidate))
@@ -384,7 +396,7 @@ impl<'a> Searcher<'a> {
             };
             let claims = self.ascent.undecided(&self.workspace, conjunction);
             if let Some(claim) = claims.into_iter().find(exactly) {
-                if problem.options.record {
+                if record {
                     cell.refuted.push(claim);
                 }
                 continue;
@@ -413,6 +425,13 @@ impl<'a> Searcher<'a> {
         let witness =
             corners.find_map(|point| Witness::near(problem.network, problem.query, point));
         Ok(witness.map_or(Step::Stuck, Step::Witness))
+    }
+
+    /// Whether the checker will confirm a claim, or that the region is empty. It is not asked about
+    /// networks so large that asking takes long.
+    fn is_confirmed(&self, node: &Node, claim: Option<&Refutation>) -> bool {
+        let Problem { network, query, .. } = self.problem;
+        confirms(network, query, &node.region, &node.phases, claim).unwrap_or(true)
     }
 
     /// The unstable ReLU whose relaxation costs the most.
