@@ -42,3 +42,79 @@ fn the_margins_are_written_for_rocq_and_nothing_is_proved() {
         assert_eq!(write(form, more).status.code(), Some(2), "{form} {more:?}");
     }
 }
+
+/// The smallest network and a property that holds of it: seeds of the fuzz targets.
+const NETWORK: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/../fuzz/seeds/network_onnx/narrow.onnx"
+);
+const PROPERTY: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/../fuzz/seeds/vnnlib/narrow.vnnlib"
+);
+
+#[test]
+fn a_certificate_says_what_is_proved_of_what_and_fits_nothing_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name).display().to_string();
+    let run = |arguments: &[&str]| {
+        let mut command = cargo_bin_cmd!("cede");
+        let output = command.arg("verify").args(arguments).output().unwrap();
+        let told = [output.stdout, output.stderr].concat();
+        (output.status.code(), String::from_utf8(told).unwrap())
+    };
+    let certificate = file("proof.txt");
+    let verified = run(&[
+        "network",
+        "--onnx",
+        NETWORK,
+        "--vnnlib",
+        PROPERTY,
+        "--certificate",
+        &certificate,
+    ]);
+    assert_eq!(verified, (Some(0), "unsat\n".to_owned()));
+    let (code, told) = run(&["check", &certificate]);
+    assert_eq!(code, Some(0), "{told}");
+    for part in [
+        "proved: for no input",
+        "sha256",
+        "narrow.onnx (",
+        "narrow.vnnlib",
+        "by cede ",
+    ] {
+        assert!(told.contains(part), "{part} in {told}");
+    }
+    let other = file("other.vnnlib");
+    let text = std::fs::read_to_string(PROPERTY).unwrap();
+    std::fs::write(&other, text + "; a comment\n").unwrap();
+    let (code, told) = run(&["check", &certificate, "--vnnlib", &other]);
+    assert_eq!(code, Some(1), "{told}");
+    assert!(told.contains("about another property"), "{told}");
+}
+
+#[test]
+fn a_time_limit_is_kept_while_files_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let long = folder.path().join("long.vnnlib");
+    let boxes: String = (0..40_000)
+        .map(|i| format!("(and (<= 0.{i} X_0 0.{i}1)(<= 0.1 X_1 0.{i}7)(<= Y_0 -{i}.5))\n"))
+        .collect();
+    let declared = "(declare-const X_0 Real)(declare-const X_1 Real)(declare-const Y_0 Real)";
+    std::fs::write(&long, format!("{declared}(assert (or {boxes}))")).unwrap();
+    let mut command = cargo_bin_cmd!("cede");
+    command.args([
+        "verify",
+        "network",
+        "--timeout",
+        "0",
+        "--onnx",
+        NETWORK,
+        "--vnnlib",
+    ]);
+    let start = std::time::Instant::now();
+    let output = command.arg(&long).output().unwrap();
+    assert!(start.elapsed().as_secs_f64() < 5.0, "{:?}", start.elapsed());
+    // What is wrong with the property is found only if there is time.
+    assert!(output.stdout.starts_with(b"timeout") || output.status.code() == Some(2));
+}

@@ -31,7 +31,7 @@ mod tensor;
 pub use export::export;
 #[cfg(feature = "policy")]
 pub use import::{ImportError, Told, import};
-pub use shape::{MOST_ELEMENTS, Shape};
+pub use shape::{MOST_ELEMENTS, MOST_WEIGHTS, Shape};
 pub use tensor::{TensorError, Values};
 
 #[cfg(all(test, feature = "policy"))]

@@ -9,7 +9,7 @@ use cede_data::Dataset;
 use cede_data::Encounter;
 use cede_formats::onnx;
 use cede_nnv::{Answer, SearchOptions};
-use cede_nnv_check::{Certificate, Network, vnnlib};
+use cede_nnv_check::{Certificate, Network, Source, vnnlib};
 use cede_train::run::checkpoint::Checkpoint;
 use cede_train::run::curve::Curve;
 use cede_train::run::{Algorithm, Lessons, Run};
@@ -31,7 +31,7 @@ fn main() -> Result<()> {
     write("vnnlib/narrow.vnnlib", property.as_bytes())?;
     write(
         "certificate/narrow.cert",
-        certificate(&network, &property)?.as_bytes(),
+        certificate(&network, &graph, &property)?.as_bytes(),
     )?;
     write("tracks/turn.csv", tracks()?.as_bytes())?;
     write("interaction/turn.csv", interaction()?.as_bytes())?;
@@ -83,14 +83,15 @@ fn property(network: &Network) -> Result<String> {
 }
 
 /// The proof of `property`.
-fn certificate(network: &Network, property: &str) -> Result<String> {
+fn certificate(network: &Network, model: &[u8], property: &str) -> Result<String> {
     let options = SearchOptions::default().record(true);
     let report = cede_nnv::verify(network, &vnnlib::read(property)?, options)?;
     if report.answer != Answer::Unsat {
         return Err("the property does not hold".into());
     }
-    let (onnx, vnnlib) = (Path::new("narrow.onnx"), Path::new("narrow.vnnlib"));
-    Ok(Certificate::new(onnx, vnnlib, report.proofs).to_text())
+    let onnx = Source::new(Path::new("narrow.onnx"), model);
+    let vnnlib = Source::new(Path::new("narrow.vnnlib"), property.as_bytes());
+    Ok(Certificate::new("seeds 1", onnx, vnnlib, report.proofs).to_text())
 }
 
 /// A left-turner from the west and somebody straight from the east, at (track, tenth of a second): x, y, vx, vy.

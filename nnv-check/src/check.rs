@@ -4,18 +4,28 @@
 //! neuron of every region by the textbook backward pass of DeepPoly (Singh et al. 2019), layer by
 //! layer with dense matrices, takes nothing from the proof but the cuts and the choice of weights,
 //! multipliers and slopes (any choice is sound, so a wrong one can only fail), and insists on a
-//! positive bound. Where rounding or a looser bound leaves a recorded refutation open, it halves
-//! the box itself, a few times at most.
+//! bound that contradicts the conjunction.
+//!
+//! The pass is written once, for intervals rounded outward and for exact numbers. Where intervals
+//! leave a recorded refutation open, exact numbers decide; where those do, too, it halves the box
+//! itself, a number of times at most.
 
 mod bounds;
-mod form;
+mod number;
 
+use super::dyadic::Dyadic;
 use super::enclosure::AffineEnclosure;
+use super::interval::Interval;
 use super::model::Network;
 use super::proof::{Cell, Proof, Refutation, Split};
-use super::property::{Conjunction, InputBox, Query};
-use bounds::Bounds;
-use form::Form;
+use super::property::{Halfspace, InputBox, Query};
+use bounds::{Bounds, Choice, Form, Layers, Least, Range, Side, assume};
+use num_bigint::BigInt;
+use num_integer::Integer as _;
+use num_rational::BigRational;
+use num_traits::One as _;
+use number::Number;
+use std::cmp::Ordering;
 
 /// Why a proof does not convince.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -39,7 +49,7 @@ pub enum CheckError {
     },
     /// A recorded refutation does not hold.
     #[error(
-        "region {cell}: conjunction {conjunction} is only bounded by {bound}, which is not positive"
+        "region {cell}: conjunction {conjunction} is only bounded by {bound:e}, which does not refute it"
     )]
     Unsound {
         /// Index of the region.
@@ -51,8 +61,13 @@ pub enum CheckError {
     },
 }
 
-/// How often a box may be halved in the attempt to confirm a refutation.
-const HALVINGS: u32 = 6;
+/// How often a box may be halved in the attempt to confirm a refutation, and how many boxes.
+const HALVINGS: u32 = 30;
+const MOST_HALVES: u32 = 1000;
+/// Products of large integers that an exact pass may take.
+const MOST_EXACT: usize = 1 << 20;
+/// Bits of the common denominator of a box's exact limits.
+const MOST_BITS: u64 = 1 << 13;
 
 /// Checks that a proof shows that the query has no solution; gives the number of regions.
 ///
@@ -74,9 +89,16 @@ pub fn check_composed(
     query: &Query,
     proof: &Proof,
 ) -> Result<usize, CheckError> {
+    let subject = Subject {
+        network,
+        inputs,
+        query,
+    };
     let mut pending = vec![Region {
+        subject: &subject,
         cell: 0,
-        bounds: Bounds::new(network, inputs, query.region.clone()),
+        region: query.region.clone(),
+        known: subject.bounds(&query.region).layers,
         phases: Vec::new(),
         open: (0_u32..).take(query.unsafe_set.len()).collect(),
     }];
@@ -88,7 +110,7 @@ pub fn check_composed(
             cell: region.cell,
             what: "is missing",
         })?;
-        if region.settle(network, query, cell)? {
+        if region.settle(cell)? {
             continue;
         }
         match cell.split {
@@ -105,7 +127,8 @@ pub fn check_composed(
     Ok(regions)
 }
 
-/// Bounds of all pre-activations on a box, layer by layer, by the checker's dense pass.
+/// Bounds of the pre-activations of all neurons with an activation on a box, layer by layer, by
+/// the checker's dense pass; infinite where nothing is known, and for the others.
 ///
 /// `inputs`, if given, encloses the network's inputs on the box; else the box is the inputs'.
 #[must_use]
@@ -114,127 +137,408 @@ pub fn neuron_bounds(
     inputs: Option<InputMap<'_>>,
     region: InputBox,
 ) -> Vec<Vec<(f64, f64)>> {
-    let mut bounds = Bounds::new(network, inputs, region);
+    let query = Query::new(region, Vec::new());
+    let subject = Subject {
+        network,
+        inputs,
+        query: &query,
+    };
+    let mut bounds = subject.bounds(&query.region);
     // Without assumed phases the bounds cannot contradict each other.
-    let _ = bounds.tighten(network);
-    bounds.layers
+    let _ = bounds.tighten();
+    let ends = |range: &Range<Interval>| {
+        let lower = range.lower.map_or(f64::NEG_INFINITY, |l| l.lo);
+        (lower, range.upper.map_or(f64::INFINITY, |u| u.hi))
+    };
+    let layers = bounds.layers.iter();
+    layers
+        .map(|layer| layer.iter().map(ends).collect())
+        .collect()
+}
+
+/// Whether exact arithmetic shows that a claim holds on a part of the query's box, on which these
+/// phases are assumed (neuron, on or off). Bounds that are met exactly are decided, strict
+/// constraints told from closed ones. False where it would take too long, or where the network
+/// [is not exact](Network::is_exact).
+#[must_use]
+pub fn refutes_exactly(
+    network: &Network,
+    query: &Query,
+    region: &InputBox,
+    phases: &[(u32, bool)],
+    claim: &Refutation,
+) -> bool {
+    let subject = Subject {
+        network,
+        inputs: None,
+        query,
+    };
+    let phases: Vec<_> = phases.iter().map(|&(n, on)| (n as usize, on)).collect();
+    query
+        .unsafe_set
+        .get(claim.conjunction as usize)
+        .filter(|conjunction| fits(claim, conjunction))
+        .is_some_and(|_| subject.refutes_exactly(region, &phases, None, claim))
+}
+
+/// Whether [`check`] will confirm a claim on this part of the query's box, whatever else it knows of
+/// it; without a claim, that the region is empty. `None` for networks so large that to ask takes
+/// long.
+#[must_use]
+pub fn confirms(
+    network: &Network,
+    query: &Query,
+    region: &InputBox,
+    phases: &[(u32, bool)],
+    claim: Option<&Refutation>,
+) -> Option<bool> {
+    let subject = Subject {
+        network,
+        inputs: None,
+        query,
+    };
+    let phases: Vec<_> = phases.iter().map(|&(n, on)| (n as usize, on)).collect();
+    let moderate = subject.products() <= MOST_EXACT;
+    moderate.then(|| subject.confirms(region, &phases, claim.unwrap_or(&NOTHING)))
+}
+
+/// A claim that refutes nothing but an empty region.
+const NOTHING: Refutation = Refutation {
+    conjunction: 0,
+    weights: Vec::new(),
+    multipliers: Vec::new(),
+    slopes: Vec::new(),
+    bound: 0.0,
+};
+
+/// Whether a claim's numbers are such that it proves something.
+fn fits(claim: &Refutation, conjunction: &[Halfspace]) -> bool {
+    let multipliers = claim.multipliers.iter().map(|(_, m)| m);
+    let usable = |w: &f64| w.is_finite() && *w >= 0.0;
+    conjunction.len() == claim.weights.len()
+        && claim.weights.iter().chain(multipliers).all(usable)
+        && claim.slopes.iter().all(|(_, s)| (0.0..=1.0).contains(s))
+}
+
+/// What a proof is about.
+struct Subject<'a> {
+    network: &'a Network,
+    inputs: Option<InputMap<'a>>,
+    query: &'a Query,
+}
+
+impl Subject<'_> {
+    /// A box in intervals, before anything is known of the neurons.
+    fn bounds(&self, region: &InputBox) -> Bounds<'_, Interval> {
+        let side = |value: f64| Side {
+            value: Interval::point(value),
+            strict: false,
+        };
+        let sides = region.lower.iter().zip(&region.upper);
+        Bounds::new(
+            self.network,
+            sides.map(|(&lo, &hi)| [side(lo), side(hi)]).collect(),
+            Interval::point(1.0),
+            self.inputs.map(|inputs| inputs(region)),
+        )
+    }
+
+    /// A box in exact numbers, with the query's exact limits where it reaches them.
+    fn exact_bounds(&self, region: &InputBox) -> Bounds<'_, Dyadic> {
+        let InputBox { lower, upper } = &self.query.region;
+        let reached = self.query.limits.iter().filter(|limit| {
+            let i = limit.input;
+            if limit.upper {
+                region.upper[i] == upper[i]
+            } else {
+                region.lower[i] == lower[i]
+            }
+        });
+        let mut unit = BigInt::one();
+        let mut limits = Vec::new();
+        for limit in reached {
+            let common = unit.lcm(limit.value.denom());
+            if common.bits() <= MOST_BITS {
+                unit = common;
+                limits.push(limit);
+            }
+        }
+        let scale = Dyadic::from(unit.clone());
+        let side = |&value: &f64| Side {
+            value: <Dyadic as Number>::of(value).times(&scale),
+            strict: false,
+        };
+        let sides = region.lower.iter().zip(&region.upper);
+        let mut sides: Vec<[Side<Dyadic>; 2]> =
+            sides.map(|(lo, hi)| [side(lo), side(hi)]).collect();
+        for limit in limits {
+            let whole: BigRational = &limit.value * &unit;
+            sides[limit.input][usize::from(limit.upper)] = Side {
+                value: Dyadic::from(whole.to_integer()),
+                strict: limit.strict,
+            };
+        }
+        Bounds::new(self.network, sides, scale, None)
+    }
+
+    /// Products that a pass over all neurons takes.
+    fn products(&self) -> usize {
+        let mut behind = 0;
+        let mut products = 0_usize;
+        for layer in self.network.layers() {
+            products = products.saturating_add(layer.outputs().saturating_mul(behind));
+            behind += layer.weights.data().len();
+        }
+        products
+    }
+
+    /// Whether exact numbers can decide, and in reasonable time.
+    fn is_exact(&self) -> bool {
+        self.inputs.is_none() && self.network.is_exact() && self.products() <= MOST_EXACT
+    }
+
+    /// Whether the claim holds by what a pass over this region alone shows.
+    fn confirms(&self, region: &InputBox, phases: &[(usize, bool)], claim: &Refutation) -> bool {
+        let mut bounds = self.bounds(region);
+        for &(neuron, on) in phases {
+            if assume(self.network, &mut bounds.layers, neuron, on).is_none() {
+                return false;
+            }
+        }
+        !bounds.tighten()
+            || self.contradicts(&bounds, phases, claim).is_ok()
+            || self.refutes_exactly(region, phases, None, claim)
+    }
+
+    /// See [`refutes_exactly`]; what is `known` of the neurons may help.
+    fn refutes_exactly(
+        &self,
+        region: &InputBox,
+        phases: &[(usize, bool)],
+        known: Option<&Layers<Interval>>,
+        claim: &Refutation,
+    ) -> bool {
+        if !self.is_exact() {
+            return false;
+        }
+        let mut bounds = self.exact_bounds(region);
+        for (layer, known) in bounds.layers.iter_mut().zip(known.into_iter().flatten()) {
+            let exact =
+                |end: Option<f64>| end.and_then(Dyadic::of).map(|end| end.times(&bounds.unit));
+            for (range, known) in layer.iter_mut().zip(known) {
+                range.lower = exact(known.lower.map(|l| l.lo));
+                range.upper = exact(known.upper.map(|u| u.hi));
+            }
+        }
+        for &(neuron, on) in phases {
+            if assume(self.network, &mut bounds.layers, neuron, on).is_none() {
+                return false;
+            }
+        }
+        !bounds.tighten() || self.contradicts(&bounds, phases, claim).is_ok()
+    }
+
+    /// Confirms that the claim's weighted sum of excesses is nowhere what the conjunction asks of
+    /// it.
+    ///
+    /// # Errors
+    /// With the bound, if it is not.
+    fn contradicts<N: Claimed>(
+        &self,
+        bounds: &Bounds<'_, N>,
+        phases: &[(usize, bool)],
+        claim: &Refutation,
+    ) -> Result<(), Option<N>> {
+        let conjunction = &self.query.unsafe_set[claim.conjunction as usize];
+        let mut form = Form::<N>::zero(self.network.outputs());
+        let mut strict = false;
+        for (atom, &weight) in conjunction.iter().zip(&claim.weights) {
+            if weight == 0.0 {
+                continue;
+            }
+            strict |= atom.is_strict();
+            let mut terms = N::atom(atom);
+            let bound = terms.pop().unwrap_or_else(N::zero);
+            let weight = N::of(weight);
+            for (sum, c) in form.coefficients.iter_mut().zip(terms) {
+                *sum = sum.plus(&weight.times(&c));
+            }
+            let constant = weight.times(&bound).times(&bounds.unit);
+            form.constant = form.constant.plus(&constant.negated());
+        }
+        let claimed = Chosen { claim, phases };
+        let Least {
+            bound,
+            strict: even,
+        } = bounds
+            .least(self.network.layers().len(), form, &claimed)
+            .ok_or(None)?;
+        match bound.sign() {
+            Some(Ordering::Greater) => Ok(()),
+            Some(Ordering::Equal) if strict || even => Ok(()),
+            _ => Err(Some(bound)),
+        }
+    }
+}
+
+/// Numbers in which a constraint's coefficients can be had.
+trait Claimed: Number {
+    /// The coefficients, then the bound.
+    fn atom(atom: &Halfspace) -> Vec<Self>;
+}
+
+impl Claimed for Interval {
+    fn atom(atom: &Halfspace) -> Vec<Self> {
+        atom.enclosed()
+    }
+}
+
+impl Claimed for Dyadic {
+    fn atom(atom: &Halfspace) -> Vec<Self> {
+        atom.exact()
+    }
+}
+
+/// The choices of a claim.
+struct Chosen<'a> {
+    claim: &'a Refutation,
+    phases: &'a [(usize, bool)],
+}
+
+impl Choice for Chosen<'_> {
+    fn slope(&self, neuron: usize) -> Option<f64> {
+        let slopes = &self.claim.slopes;
+        slopes.iter().find(|s| s.0 as usize == neuron).map(|s| s.1)
+    }
+
+    fn multiplier(&self, neuron: usize) -> f64 {
+        let phase = self.phases.iter().find(|p| p.0 == neuron);
+        let multipliers = &self.claim.multipliers;
+        let size = multipliers.iter().find(|m| m.0 as usize == neuron);
+        match (phase, size) {
+            (Some((_, on)), Some((_, size))) => {
+                if *on {
+                    -size
+                } else {
+                    *size
+                }
+            }
+            _ => 0.0,
+        }
+    }
 }
 
 #[derive(Clone)]
 struct Region<'a> {
+    subject: &'a Subject<'a>,
     cell: usize,
-    bounds: Bounds<'a>,
+    region: InputBox,
+    /// What is known of the neurons on a larger region, and of this one after [`Self::tighten`].
+    known: Layers<Interval>,
     phases: Vec<(usize, bool)>,
     open: Vec<u32>,
 }
 
-impl Region<'_> {
+impl<'a> Region<'a> {
+    /// The bounds of the neurons on the region; `None` if they contradict each other.
+    fn tighten(&mut self) -> Option<Bounds<'a, Interval>> {
+        let mut bounds = self.subject.bounds(&self.region);
+        bounds.layers.clone_from(&self.known);
+        let consistent = bounds.tighten();
+        self.known.clone_from(&bounds.layers);
+        consistent.then_some(bounds)
+    }
+
     /// Confirms what the cell claims; true if nothing is left open.
-    fn settle(
-        &mut self,
-        network: &Network,
-        query: &Query,
-        cell: &Cell,
-    ) -> Result<bool, CheckError> {
-        let consistent = self.bounds.tighten(network);
-        if cell.empty || !consistent {
-            let what = "is said to be empty, but is not";
-            return if consistent {
-                Err(CheckError::Malformed {
-                    cell: self.cell,
-                    what,
-                })
+    fn settle(&mut self, cell: &Cell) -> Result<bool, CheckError> {
+        let malformed = |cell, what| CheckError::Malformed { cell, what };
+        let Some(bounds) = self.tighten() else {
+            return Ok(true);
+        };
+        if cell.empty {
+            let conjunctions = &self.subject.query.unsafe_set;
+            let empty = |room| self.confirm(&bounds, &NOTHING, HALVINGS, room).is_ok();
+            return if conjunctions.is_empty() || !empty(&mut { MOST_HALVES }) {
+                Err(malformed(self.cell, "is said to be empty, but is not"))
             } else {
                 Ok(true)
             };
         }
         for claim in &cell.refuted {
-            let conjunction = query.unsafe_set.get(claim.conjunction as usize);
-            let usable = conjunction.is_some_and(|c| c.len() == claim.weights.len())
-                && claim
-                    .weights
-                    .iter()
-                    .chain(claim.multipliers.iter().map(|(_, m)| m))
-                    .all(|&w| w >= 0.0)
-                && claim.slopes.iter().all(|(_, s)| (0.0..=1.0).contains(s));
-            let (Some(conjunction), true) = (conjunction, usable) else {
-                return Err(CheckError::Malformed {
-                    cell: self.cell,
-                    what: "has a refutation that does not fit",
-                });
-            };
-            self.confirm(network, conjunction, claim, HALVINGS)?;
+            let conjunction = self
+                .subject
+                .query
+                .unsafe_set
+                .get(claim.conjunction as usize);
+            if !conjunction.is_some_and(|c| fits(claim, c)) {
+                return Err(malformed(self.cell, "has a refutation that does not fit"));
+            }
+            self.confirm(&bounds, claim, HALVINGS, &mut { MOST_HALVES })?;
             self.open.retain(|&c| c != claim.conjunction);
         }
         Ok(self.open.is_empty())
     }
 
-    /// Confirms a refutation, on the halves of the box if not on the whole.
+    /// Confirms a refutation, on the halves of the box if not on the whole: so deep at most, and so
+    /// many in all.
     fn confirm(
         &self,
-        network: &Network,
-        conjunction: &Conjunction,
+        bounds: &Bounds<'_, Interval>,
         claim: &Refutation,
         halvings: u32,
+        room: &mut u32,
     ) -> Result<(), CheckError> {
-        let bound = self.refute(network, conjunction, claim);
-        if bound > 0.0 {
+        let Err(bound) = self.subject.contradicts(bounds, &self.phases, claim) else {
+            return Ok(());
+        };
+        let Self {
+            subject,
+            region,
+            known,
+            phases,
+            ..
+        } = self;
+        // Tighter bounds come to other slopes, which need not be better.
+        if subject.refutes_exactly(region, phases, Some(known), claim)
+            || subject.confirms(region, phases, claim)
+        {
             return Ok(());
         }
-        let InputBox { lower, upper } = &self.bounds.region;
-        let widest = (0..lower.len())
-            .max_by(|&a, &b| (upper[a] - lower[a]).total_cmp(&(upper[b] - lower[b])));
-        let (Some(input), true) = (widest, halvings > 0) else {
+        let (Some(input), true, Some(left)) = (self.widest(), halvings > 0, room.checked_sub(1))
+        else {
             return Err(CheckError::Unsound {
                 cell: self.cell,
                 conjunction: claim.conjunction,
-                bound,
+                bound: bound.map_or(f64::NEG_INFINITY, |b| b.lo),
             });
         };
-        let at = 0.5 * (lower[input] + upper[input]);
+        *room = left;
+        let at = f64::midpoint(self.region.lower[input], self.region.upper[input]);
         for above in [false, true] {
             let mut half = self.clone();
             let side = if above {
-                &mut half.bounds.region.lower
+                &mut half.region.lower
             } else {
-                &mut half.bounds.region.upper
+                &mut half.region.upper
             };
             side[input] = at;
-            if half.bounds.tighten(network) {
-                half.confirm(network, conjunction, claim, halvings - 1)?;
+            if let Some(bounds) = half.tighten() {
+                half.confirm(&bounds, claim, halvings - 1, room)?;
             }
         }
         Ok(())
     }
 
-    /// A lower bound of the claim's weighted sum of excesses on the region.
-    fn refute(&self, network: &Network, conjunction: &Conjunction, claim: &Refutation) -> f64 {
-        let mut form = Form::zero(network.outputs());
-        for (atom, &weight) in conjunction.iter().zip(&claim.weights) {
-            form.add(&atom.coefficients, -atom.bound, weight);
-        }
-        let multiplier = |neuron: usize| {
-            let sign = self
-                .phases
-                .iter()
-                .find(|p| p.0 == neuron)
-                .map(|p| if p.1 { -1.0 } else { 1.0 });
-            let size = claim
-                .multipliers
-                .iter()
-                .find(|m| m.0 as usize == neuron)
-                .map(|m| m.1);
-            sign.unwrap_or(0.0) * size.unwrap_or(0.0)
+    /// The input whose side is the longest, compared with that of the query's box.
+    fn widest(&self) -> Option<usize> {
+        let InputBox { lower, upper } = &self.region;
+        let whole = &self.subject.query.region;
+        let share = |&i: &usize| {
+            let share = (upper[i] - lower[i]) / (whole.upper[i] - whole.lower[i]);
+            // A side without length, or of infinite length.
+            if share.is_nan() { 0.0 } else { share }
         };
-        let slope = |neuron: usize| {
-            claim
-                .slopes
-                .iter()
-                .find(|s| s.0 as usize == neuron)
-                .map(|s| s.1)
-        };
-        self.bounds
-            .least(network, network.layers().len(), form, slope, multiplier)
+        (0..lower.len()).max_by(|a, b| share(a).total_cmp(&share(b)))
     }
 
     /// The two parts of the region that a split makes.
@@ -252,36 +556,21 @@ impl Region<'_> {
         match split {
             Split::Input { input, at } => {
                 let index = input as usize;
-                let fits = one
-                    .bounds
-                    .region
-                    .lower
-                    .get(index)
-                    .is_some_and(|&lo| lo <= at)
-                    && one
-                        .bounds
-                        .region
-                        .upper
-                        .get(index)
-                        .is_some_and(|&hi| at <= hi);
-                if !fits {
+                let InputBox { lower, upper } = &one.region;
+                let sides = lower.get(index).zip(upper.get(index));
+                if !sides.is_some_and(|(&lo, &hi)| lo <= at && at <= hi) {
                     return Err(malformed);
                 }
-                one.bounds.region.upper[index] = at;
-                two.bounds.region.lower[index] = at;
+                one.region.upper[index] = at;
+                two.region.lower[index] = at;
             }
             Split::Phase { neuron } => {
                 let neuron = neuron as usize;
-                if one
-                    .bounds
-                    .assume(neuron, true)
-                    .and(two.bounds.assume(neuron, false))
-                    .is_none()
-                {
-                    return Err(malformed);
+                for (half, on) in [(&mut one, true), (&mut two, false)] {
+                    assume(half.subject.network, &mut half.known, neuron, on)
+                        .ok_or(malformed.clone())?;
+                    half.phases.push((neuron, on));
                 }
-                one.phases.push((neuron, true));
-                two.phases.push((neuron, false));
             }
         }
         Ok([one, two])

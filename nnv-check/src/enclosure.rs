@@ -1,7 +1,7 @@
 //! A network's inputs as functions of other variables, for whoever searches over those.
 
 use super::property::InputBox;
-use super::rounding::gamma;
+use super::rounding::{gamma, underflow};
 
 /// An input of the network as a linear function of the variables of a box:
 /// |input − (constant + slopes · x)| ≤ radius everywhere on it.
@@ -26,7 +26,7 @@ impl AffineEnclosure {
             u += a.max(b);
             size += a.abs().max(b.abs());
         }
-        let slack = gamma(self.slopes.len() + 4) * size;
+        let slack = gamma(self.slopes.len() + 4) * size + underflow(self.slopes.len() + 4, 1.0);
         (l - slack, u + slack)
     }
 
@@ -34,6 +34,6 @@ impl AffineEnclosure {
     #[must_use]
     pub fn magnitude(&self, region: &InputBox) -> f64 {
         let (l, u) = self.affine_range(region);
-        (l.abs().max(u.abs()) + self.radius) * (1.0 + 1e-12)
+        (l.abs().max(u.abs()) + self.radius) * (1.0 + 1e-12) + underflow(1, 1.0)
     }
 }

@@ -7,7 +7,10 @@
 
 mod certificate;
 pub mod check;
+mod dyadic;
 mod enclosure;
+mod gzip;
+mod interval;
 mod model;
 pub mod onnx;
 pub mod proof;
@@ -15,7 +18,7 @@ mod property;
 pub mod rounding;
 pub mod vnnlib;
 
-pub use certificate::{Certificate, CertificateError};
+pub use certificate::{Certificate, CertificateError, Proved, Source};
 pub use enclosure::AffineEnclosure;
 pub use model::{Activation, Evaluation, Layer, Matrix, ModelError, Network};
-pub use property::{Conjunction, Halfspace, InputBox, Property, Query};
+pub use property::{Conjunction, Halfspace, InputBox, Limit, Property, Query};

@@ -1,6 +1,13 @@
 //! The normal form of a network: affine layers, each followed by one activation.
 
-use super::rounding::{SPARE, UNDERFLOW, gamma};
+use super::dyadic::{self, Dyadic};
+use super::interval::Interval;
+use super::rounding::gamma;
+use num_bigint::BigInt;
+use num_integer::Integer as _;
+use num_rational::BigRational;
+use num_traits::One as _;
+use std::cmp::Ordering;
 
 /// A dense matrix, row-major.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,12 +92,22 @@ impl Activation {
         }
     }
 
-    /// How far the computed value can be from the exact one. The system's tanh is assumed to err
-    /// by at most 8 units in the last place (glibc states 2).
-    pub fn error(self) -> f64 {
-        match self {
+    /// The activation's range on an interval. The system's tanh is assumed to err by at most 8
+    /// units in the last place (glibc states 2).
+    fn enclose(self, z: Interval) -> Interval {
+        if !z.is_known() {
+            return match self {
+                Self::Tanh => Interval { lo: -1.0, hi: 1.0 },
+                Self::Identity | Self::Relu => z,
+            };
+        }
+        let error = match self {
             Self::Identity | Self::Relu => 0.0,
             Self::Tanh => 8.0 * f64::EPSILON,
+        };
+        Interval {
+            lo: self.apply(z.lo) - error,
+            hi: self.apply(z.hi) + error,
         }
     }
 }
@@ -125,6 +142,14 @@ impl Layer {
     /// Relative error of a sum over this layer's inputs, its weights' own uncertainty included.
     pub fn relative_error(&self) -> f64 {
         gamma(self.inputs() + 4) + 2.0 * self.uncertainty
+    }
+
+    /// What an exact weight may be as a multiple of the given one.
+    pub(crate) fn spread(&self) -> Interval {
+        Interval {
+            lo: 1.0 - self.uncertainty,
+            hi: 1.0 + self.uncertainty,
+        }
     }
 }
 
@@ -195,32 +220,101 @@ impl Network {
     }
 
     /// The outputs in `f64`, and for each a bound on its distance from the exact output of the
-    /// network in real-number semantics. Panics if `input` is shorter than the network's inputs.
+    /// network in real-number semantics: infinite where a number on the way overflows. Panics if
+    /// `input` is shorter than the network's inputs.
     #[must_use]
     pub fn run(&self, input: &[f64]) -> Evaluation {
         let mut values = input[..self.inputs].to_vec();
-        let mut errors = vec![0.0; self.inputs];
         for layer in &self.layers {
-            let relative = layer.relative_error();
-            let (z, e): (Vec<f64>, Vec<f64>) = (0..layer.outputs())
-                .map(|i| {
-                    let (mut sum, mut size, mut carried) =
-                        (layer.bias[i], layer.bias[i].abs(), 0.0);
-                    for ((w, v), e) in layer.weights.row(i).iter().zip(&values).zip(&errors) {
-                        sum += w * v;
-                        size += (w * v).abs();
-                        carried += w.abs() * e;
-                    }
-                    let error = (carried * (1.0 + relative) + relative * size + UNDERFLOW) * SPARE;
-                    (
-                        layer.activation.apply(sum),
-                        error + layer.activation.error(),
-                    )
-                })
-                .unzip();
-            (values, errors) = (z, e);
+            let sum = |i: usize| {
+                let terms = layer.weights.row(i).iter().zip(&values);
+                layer.bias[i] + terms.map(|(w, v)| w * v).sum::<f64>()
+            };
+            values = (0..layer.outputs())
+                .map(|i| layer.activation.apply(sum(i)))
+                .collect();
         }
+        let input = input[..self.inputs].iter().copied().map(Interval::point);
+        let ranges = self.enclose(input.collect());
+        let error = |(v, y): (&f64, Interval)| {
+            if v.is_finite() && y.is_known() {
+                (y.hi - v).max(v - y.lo).next_up()
+            } else {
+                f64::INFINITY
+            }
+        };
+        let errors = values.iter().zip(ranges).map(error).collect();
         Evaluation { values, errors }
+    }
+
+    /// Intervals that contain the exact outputs for all inputs in the given ones.
+    pub(crate) fn enclose(&self, input: Vec<Interval>) -> Vec<Interval> {
+        let mut values = input;
+        for layer in &self.layers {
+            let uncertain = layer.spread();
+            let sum = |i: usize| {
+                let terms = layer.weights.row(i).iter().zip(&values);
+                let start = Interval::point(layer.bias[i]);
+                let z = terms.fold(start, |sum, (&w, &v)| {
+                    sum.add(v.mul(Interval::point(w)).mul(uncertain))
+                });
+                layer.activation.enclose(z)
+            };
+            values = (0..layer.outputs()).map(sum).collect();
+        }
+        values
+    }
+
+    /// Whether outputs of rational inputs are rational and can be computed: there is no tanh and
+    /// no weight is uncertain.
+    #[must_use]
+    pub fn is_exact(&self) -> bool {
+        let exact = |l: &Layer| l.uncertainty == 0.0 && l.activation != Activation::Tanh;
+        self.layers.iter().all(exact)
+    }
+
+    /// The exact outputs; `None` unless [`Self::is_exact`]. Panics if `input` is shorter than the
+    /// network's inputs.
+    ///
+    /// Cost: one product of large integers for each weight; their length grows with the layers.
+    #[must_use]
+    pub fn evaluate(&self, input: &[BigRational]) -> Option<Vec<BigRational>> {
+        if !self.is_exact() {
+            return None;
+        }
+        // All values are multiples of 1/unit, which no layer changes: ReLU is homogeneous.
+        let input = &input[..self.inputs];
+        let unit = input
+            .iter()
+            .fold(BigInt::one(), |unit, x| unit.lcm(x.denom()));
+        let whole = |x: &BigRational| Dyadic::from(x.numer() * (&unit / x.denom()));
+        let mut values: Vec<Dyadic> = input.iter().map(whole).collect();
+        let scale = Dyadic::from(unit.clone());
+        for layer in &self.layers {
+            let of = |v: f64| Dyadic::of(v).unwrap_or_else(Dyadic::zero);
+            let neuron = |i: usize| {
+                let terms = layer.weights.row(i).iter().zip(&values);
+                let terms = terms.filter(|(w, v)| **w != 0.0 && !v.is_zero());
+                let start = &of(layer.bias[i]) * &scale;
+                let z = terms.fold(start, |sum, (&w, v)| &sum + &(&of(w) * v));
+                match layer.activation {
+                    Activation::Relu if z.sign() == Ordering::Less => Dyadic::zero(),
+                    _ => z,
+                }
+            };
+            values = (0..layer.outputs()).map(neuron).collect();
+        }
+        let fraction = |y: &Dyadic| y.rational() / BigRational::from(unit.clone());
+        Some(values.iter().map(fraction).collect())
+    }
+
+    /// Intervals that contain the exact outputs of rational inputs.
+    pub(crate) fn enclose_rational(&self, input: &[BigRational]) -> Vec<Interval> {
+        let ends = |x: &BigRational| Interval {
+            lo: dyadic::floor(x),
+            hi: dyadic::ceil(x),
+        };
+        self.enclose(input[..self.inputs].iter().map(ends).collect())
     }
 
     /// The outputs as an `f32` runtime computes them (products summed in order of the inputs).

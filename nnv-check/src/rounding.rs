@@ -5,9 +5,15 @@
 //! (Higham, *Accuracy and Stability of Numerical Algorithms*, 2nd ed., §3.1). The bounds below are
 //! at least twice that, so that the rounding of the bound itself is covered as well.
 
-/// Absolute slack for gradual underflow: far above any number of lost subnormals, far below any
-/// bound of interest.
-pub const UNDERFLOW: f64 = 1e-280;
+/// At least twice the error of this many products that may not be normal numbers: each is off by
+/// at most half of the smallest positive `f64`, 2⁻¹⁰⁷⁴, times `reach` where it is multiplied by
+/// numbers whose absolute values add up to that.
+#[must_use]
+pub fn underflow(products: usize, reach: f64) -> f64 {
+    // A NaN stays one.
+    let reach = if reach < 1.0 { 1.0 } else { reach };
+    products as f64 * f64::from_bits(1) * reach
+}
 
 /// Twice γₙ for `terms` products: the relative error of a sum of so many, with room to spare.
 pub fn gamma(terms: usize) -> f64 {

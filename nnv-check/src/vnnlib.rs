@@ -1,14 +1,20 @@
 //! Reads properties in VNN-LIB 1.0: declarations of `X_i` and `Y_i`, and assertions over them.
 //!
-//! Understood: `and`, `or`, `<=`, `>=`, `<`, `>`, `=`, `+`, `-`, `*` by constants. Inputs must be
-//! bounded by constants, outputs are constrained linearly. Every decimal stands for the nearest
-//! `f64`, and a strict comparison is read as its closure (a superset of the unsafe set).
+//! Understood: `and`, `or`, `<=`, `>=`, `<`, `>`, `=` (two sides or a chain), `+`, `-`, `*` and `/`
+//! by constants. Inputs must be bounded by constants, outputs are constrained linearly. Every
+//! decimal has its exact value, all arithmetic of the reader is exact, and < is not ≤.
 
+mod decimal;
 mod expression;
 mod lexer;
 
-use super::property::{Conjunction, Halfspace, InputBox, Property, Query};
+use super::property::{Conjunction, Halfspace, InputBox, Limit, Property, Query};
+use super::{dyadic, gzip};
 use expression::{Atom, Formula};
+use num_rational::BigRational;
+use num_traits::{Signed as _, Zero as _};
+use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Why a property cannot be used, and where.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -26,8 +32,8 @@ pub struct VnnlibError {
 /// The most numbers that a property may expand to.
 const MOST_NUMBERS: usize = 1 << 24;
 
-/// Reads a property. Never panics, and takes time linear in the text times the number of
-/// conjunctions it expands to (at most 2²⁴ numbers in all).
+/// Reads a property. Never panics, and takes time linear in the text and in the conjunctions that
+/// it expands to (at most 2²⁴ numbers in all).
 ///
 /// # Errors
 /// With line and column, if the text is not VNN-LIB, an input is unbounded, or a constraint is
@@ -44,16 +50,23 @@ pub fn read(text: &str) -> Result<Property, VnnlibError> {
             expression::Statement::Assert(formula) => formulas.push(formula),
         }
     }
-    let disjuncts = normalise(&Formula::And(formulas), inputs, outputs)?;
+    let start = vec![Disjunct {
+        ranges: vec![Range::default(); inputs],
+        outputs: Vec::new(),
+    }];
     let mut queries: Vec<Query> = Vec::new();
-    for Disjunct { region, outputs } in disjuncts {
-        let region = region.closed()?;
-        let Some(region) = region else { continue };
-        match queries.iter_mut().find(|q| q.region == region) {
-            Some(query) => query.unsafe_set.push(outputs),
+    let mut places: HashMap<Key, usize> = HashMap::new();
+    for disjunct in conjoin(start, &Formula::And(formulas), outputs)? {
+        let Some((region, limits)) = domain(&disjunct.ranges)? else {
+            continue;
+        };
+        let place = *places.entry(key(&region, &limits)).or_insert(queries.len());
+        match queries.get_mut(place) {
+            Some(query) => query.unsafe_set.push(disjunct.outputs),
             None => queries.push(Query {
                 region,
-                unsafe_set: vec![outputs],
+                limits,
+                unsafe_set: vec![disjunct.outputs],
             }),
         }
     }
@@ -64,63 +77,131 @@ pub fn read(text: &str) -> Result<Property, VnnlibError> {
     })
 }
 
+/// [`read`] from the bytes of a file, packed with gzip or not.
+///
+/// # Errors
+/// As [`read`], and if the bytes are not UTF-8.
+pub fn read_bytes(bytes: &[u8]) -> Result<Property, VnnlibError> {
+    let fault = |what| VnnlibError {
+        line: 1,
+        column: 1,
+        what,
+    };
+    let bytes = &gzip::unpacked(bytes).map_err(|e| fault(format!("not a gzip file: {e}")))?;
+    let text = std::str::from_utf8(bytes).map_err(|e| VnnlibError {
+        line: 1 + bytes[..e.valid_up_to()]
+            .iter()
+            .filter(|&&b| b == b'\n')
+            .count(),
+        column: 1,
+        what: "is not text in UTF-8".to_owned(),
+    })?;
+    read(text)
+}
+
+/// What tells the inputs of one query from those of another.
+type Key = (Vec<u64>, Vec<Limit>);
+
+fn key(region: &InputBox, limits: &[Limit]) -> Key {
+    let sides = region.lower.iter().chain(&region.upper);
+    (sides.map(|s| s.to_bits()).collect(), limits.to_vec())
+}
+
 /// One conjunction of the disjunctive normal form, as it grows.
 #[derive(Clone)]
 struct Disjunct {
-    region: Region,
+    ranges: Vec<Range>,
     outputs: Conjunction,
 }
 
 impl Disjunct {
     /// How many numbers it holds.
     fn size(&self) -> usize {
-        2 * self.region.0.len()
-            + self
-                .outputs
-                .iter()
-                .map(|h| h.coefficients.len())
-                .sum::<usize>()
+        let atoms = self.outputs.iter().map(|h| h.coefficients().len());
+        2 * self.ranges.len() + atoms.sum::<usize>()
     }
 }
 
-/// A box that may still be unbounded or empty.
-#[derive(Clone)]
-struct Region(Vec<(f64, f64)>);
+/// The range of an input; it may still be unbounded or empty.
+#[derive(Clone, Default)]
+struct Range {
+    lower: Option<Arc<Side>>,
+    upper: Option<Arc<Side>>,
+}
 
-impl Region {
-    /// The box; `None` if it is empty.
-    fn closed(self) -> Result<Option<InputBox>, VnnlibError> {
-        if let Some(i) = self
-            .0
-            .iter()
-            .position(|(lo, hi)| !lo.is_finite() || !hi.is_finite())
-        {
-            let what =
-                format!("X_{i} is not bounded on both sides; assert (>= X_{i} …) and (<= X_{i} …)");
-            return Err(VnnlibError {
-                line: 1,
-                column: 1,
-                what,
-            });
+/// A limit, and whether it is excluded itself.
+#[derive(PartialEq)]
+struct Side {
+    value: BigRational,
+    strict: bool,
+}
+
+impl Range {
+    fn restrict(&mut self, upper: bool, side: Side) {
+        let place = if upper {
+            &mut self.upper
+        } else {
+            &mut self.lower
+        };
+        let tighter = place.as_ref().is_none_or(|old| {
+            if side.value == old.value {
+                side.strict
+            } else {
+                (side.value < old.value) == upper
+            }
+        });
+        if tighter {
+            *place = Some(Arc::new(side));
         }
-        let (lower, upper): (Vec<_>, Vec<_>) = self.0.into_iter().unzip();
-        let empty = lower.iter().zip(&upper).any(|(lo, hi)| lo > hi);
-        Ok((!empty).then_some(InputBox { lower, upper }))
     }
 }
 
-/// The disjunctive normal form.
-fn normalise(
-    formula: &Formula,
-    inputs: usize,
-    outputs: usize,
-) -> Result<Vec<Disjunct>, VnnlibError> {
-    let all = Region(vec![(f64::NEG_INFINITY, f64::INFINITY); inputs]);
-    let start = vec![Disjunct {
-        region: all,
-        outputs: Vec::new(),
-    }];
-    conjoin(start, formula, outputs)
+/// The box of `f64` around the ranges, and the limits that it widens; `None` if there is no input.
+fn domain(ranges: &[Range]) -> Result<Option<(InputBox, Vec<Limit>)>, VnnlibError> {
+    let mut region = InputBox {
+        lower: Vec::with_capacity(ranges.len()),
+        upper: Vec::with_capacity(ranges.len()),
+    };
+    let mut limits = Vec::new();
+    let fault = |what| VnnlibError {
+        line: 1,
+        column: 1,
+        what,
+    };
+    for (input, range) in ranges.iter().enumerate() {
+        let Range {
+            lower: Some(lower),
+            upper: Some(upper),
+        } = range
+        else {
+            return Err(fault(format!(
+                "X_{input} is not bounded on both sides; assert (>= X_{input} …) and (<= X_{input} …)"
+            )));
+        };
+        if lower.value > upper.value || lower.value == upper.value && (lower.strict || upper.strict)
+        {
+            return Ok(None);
+        }
+        let hull = (dyadic::floor(&lower.value), dyadic::ceil(&upper.value));
+        if !hull.0.is_finite() || !hull.1.is_finite() {
+            return Err(fault(format!(
+                "a limit of X_{input} is beyond the range of double precision (about 1.8e308)"
+            )));
+        }
+        for (side, hull, upper) in [(lower, hull.0, false), (upper, hull.1, true)] {
+            if side.strict || dyadic::exact(hull).as_ref() != Some(&side.value) {
+                limits.push(Limit {
+                    input,
+                    upper,
+                    value: side.value.clone(),
+                    strict: side.strict,
+                });
+            }
+        }
+        region.lower.push(hull.0);
+        region.upper.push(hull.1);
+    }
+    Ok(Some((region, limits)))
 }
 
 /// Each of `so_far` together with the formula.
@@ -134,54 +215,66 @@ fn conjoin(
             .iter()
             .try_fold(so_far, |all, part| conjoin(all, part, outputs)),
         Formula::Or(parts, place) => {
-            let mut all = Vec::new();
+            let (mut all, mut size) = (Vec::new(), 0);
             for part in parts {
-                all.extend(conjoin(so_far.clone(), part, outputs)?);
-                if all.iter().map(Disjunct::size).sum::<usize>() > MOST_NUMBERS {
+                let more = conjoin(so_far.clone(), part, outputs)?;
+                size += more.iter().map(Disjunct::size).sum::<usize>();
+                if size > MOST_NUMBERS {
                     return Err(place
                         .error("expands to too many conjunctions; split the property".to_owned()));
                 }
+                all.extend(more);
             }
             Ok(all)
         }
-        Formula::Atom(atom) => so_far.into_iter().map(|d| add(d, atom, outputs)).collect(),
+        Formula::Atom(atom) => {
+            let added = so_far.into_iter().map(|d| add(d, atom, outputs));
+            added.filter_map(Result::transpose).collect()
+        }
     }
 }
 
-/// The conjunction with one more constraint.
-fn add(mut disjunct: Disjunct, atom: &Atom, outputs: usize) -> Result<Disjunct, VnnlibError> {
+/// The conjunction with one more constraint; `None` if that is never met.
+fn add(
+    mut disjunct: Disjunct,
+    atom: &Atom,
+    outputs: usize,
+) -> Result<Option<Disjunct>, VnnlibError> {
     let Atom {
         inputs: of_x,
         outputs: of_y,
         bound,
+        strict,
         place,
     } = atom;
+    let strict = *strict;
     match (of_x.as_slice(), of_y.as_slice()) {
-        (&[(index, c)], []) => {
-            let Some((lo, hi)) = disjunct.region.0.get_mut(index) else {
+        ([(index, c)], []) => {
+            let Some(range) = disjunct.ranges.get_mut(*index) else {
                 return Err(place.error(format!("X_{index} is not declared")));
             };
-            let limit = bound / c;
-            if c > 0.0 {
-                *hi = hi.min(limit);
+            let value = bound / c;
+            range.restrict(c.is_positive(), Side { value, strict });
+        }
+        ([], [.., (last, _)]) => {
+            if *last >= outputs {
+                return Err(place.error(format!("Y_{last} is not declared")));
+            }
+            let half = Halfspace::of_fractions(of_y, bound, outputs).ok_or_else(|| {
+                place.error("its numbers have too many digits for a common denominator".to_owned())
+            })?;
+            disjunct
+                .outputs
+                .push(if strict { half.strict() } else { half });
+        }
+        ([], []) => {
+            let met = if strict {
+                bound.is_positive()
             } else {
-                *lo = lo.max(limit);
-            }
+                bound.is_positive() || bound.is_zero()
+            };
+            return Ok(met.then_some(disjunct));
         }
-        ([], [_, ..]) => {
-            let mut coefficients = vec![0.0; outputs];
-            for &(index, c) in of_y {
-                let Some(slot) = coefficients.get_mut(index) else {
-                    return Err(place.error(format!("Y_{index} is not declared")));
-                };
-                *slot = c;
-            }
-            disjunct.outputs.push(Halfspace {
-                coefficients,
-                bound: *bound,
-            });
-        }
-        ([], []) => return Err(place.error("a comparison of constants".to_owned())),
         ([_, _, ..], []) => {
             return Err(place.error(
                 "a constraint between several inputs; only boxes are supported".to_owned(),
@@ -193,7 +286,7 @@ fn add(mut disjunct: Disjunct, atom: &Atom, outputs: usize) -> Result<Disjunct, 
             );
         }
     }
-    Ok(disjunct)
+    Ok(Some(disjunct))
 }
 
 #[cfg(test)]

@@ -61,7 +61,7 @@ impl Worker<'_> {
         let workspace = &mut self.workspace;
         // Without assumed phases the bounds cannot contradict each other.
         let _ = pulp::Arch::new()
-            .dispatch(|| workspace.bound(prepared, region, inputs, bounds, &[], atoms));
+            .dispatch(|| workspace.bound(prepared, region, inputs, bounds, &[], atoms, None));
     }
 
     /// Shows that the constraint holds nowhere on the box, which is the one that
@@ -71,7 +71,8 @@ impl Worker<'_> {
             return None;
         }
         let (workspace, ascent) = (&self.workspace, &mut self.ascent);
-        let bound = pulp::Arch::new().dispatch(|| ascent.bound(workspace, region, 0..1));
+        let bound = pulp::Arch::new().dispatch(|| ascent.bound(workspace, region, 0..1, None));
+        let bound = bound.unwrap_or(f64::NEG_INFINITY);
         (bound > 0.0).then(|| ascent.refutation(workspace, 0, bound))
     }
 

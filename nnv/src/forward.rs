@@ -1,15 +1,16 @@
 //! The network in plain `f64`, fast, with gradients: for the search for counterexamples. Nothing
-//! here is rounded soundly; what it finds is confirmed by [`Network::run`].
+//! here is rounded soundly; what it finds is confirmed by [`Query::is_unsafe`](cede_nnv_check::Query::is_unsafe).
 
 use super::kernel::add_scaled;
+use super::propagation::{Prepared, Weights};
 use cede_nnv_check::Halfspace;
 use cede_nnv_check::{Activation, Network};
 
 /// Memory of runs through a network.
 pub(super) struct Runner<'a> {
     network: &'a Network,
-    /// Weights by input neuron.
-    columns: Vec<Vec<f64>>,
+    /// The network again, its weights by input neuron.
+    prepared: &'a Prepared,
     /// Output of every layer.
     values: Vec<Vec<f64>>,
     gradient: Vec<f64>,
@@ -17,25 +18,12 @@ pub(super) struct Runner<'a> {
 }
 
 impl<'a> Runner<'a> {
-    pub(super) fn new(network: &'a Network) -> Self {
-        let columns = network
-            .layers()
-            .iter()
-            .map(|l| {
-                (0..l.inputs())
-                    .flat_map(|j| (0..l.outputs()).map(move |i| l.weights.row(i)[j]))
-                    .collect()
-            })
-            .collect();
-        let values = network
-            .layers()
-            .iter()
-            .map(|l| vec![0.0; l.outputs()])
-            .collect();
+    pub(super) fn new(network: &'a Network, prepared: &'a Prepared) -> Self {
+        let layers = network.layers().iter();
         Self {
             network,
-            columns,
-            values,
+            prepared,
+            values: layers.map(|l| vec![0.0; l.outputs()]).collect(),
             gradient: Vec::new(),
             next: Vec::new(),
         }
@@ -49,12 +37,17 @@ impl<'a> Runner<'a> {
             let from = before.last().map_or(input, Vec::as_slice);
             let sums = &mut rest[0];
             sums.copy_from_slice(&layer.bias);
-            for (&x, column) in from
-                .iter()
-                .zip(self.columns[index].chunks_exact(layer.outputs()))
-            {
-                if x != 0.0 {
-                    add_scaled(sums, column, x);
+            match &self.prepared.layers[index].weights {
+                Weights::Dense(columns) => {
+                    let columns = columns.chunks_exact(layer.outputs());
+                    for (&x, column) in from.iter().zip(columns).filter(|(x, _)| **x != 0.0) {
+                        add_scaled(sums, column, x);
+                    }
+                }
+                Weights::Sparse(rows) => {
+                    for (sum, row) in sums.iter_mut().zip(rows) {
+                        *sum += row.iter().map(|&(j, w)| w * from[j as usize]).sum::<f64>();
+                    }
                 }
             }
             match layer.activation {
@@ -68,8 +61,10 @@ impl<'a> Runner<'a> {
     /// The gradient of an atom's excess at the inputs of the last run.
     #[inline(always)]
     pub(super) fn gradient(&mut self, atom: &Halfspace) -> &[f64] {
-        self.gradient.clone_from(&atom.coefficients);
-        for (layer, values) in self.network.layers().iter().zip(&self.values).rev() {
+        self.gradient.clear();
+        self.gradient.extend_from_slice(atom.coefficients());
+        let layers = self.network.layers().iter().zip(&self.prepared.layers);
+        for ((layer, prepared), values) in layers.zip(&self.values).rev() {
             self.next.clear();
             self.next.resize(layer.inputs(), 0.0);
             for (i, (&g, &y)) in self.gradient.iter().zip(values).enumerate() {
@@ -79,8 +74,16 @@ impl<'a> Runner<'a> {
                     Activation::Relu => 0.0,
                     Activation::Tanh => g * (1.0 - y * y),
                 };
-                if g != 0.0 {
-                    add_scaled(&mut self.next, layer.weights.row(i), g);
+                if g == 0.0 {
+                    continue;
+                }
+                match &prepared.weights {
+                    Weights::Dense(_) => add_scaled(&mut self.next, layer.weights.row(i), g),
+                    Weights::Sparse(rows) => {
+                        for &(j, w) in &rows[i] {
+                            self.next[j as usize] += g * w;
+                        }
+                    }
                 }
             }
             std::mem::swap(&mut self.gradient, &mut self.next);

@@ -15,11 +15,16 @@ mod relaxation;
 mod search;
 #[cfg(test)]
 mod tests;
+mod watchdog;
+mod witness;
 
 pub use bounder::{Bounder, Worker};
 pub use propagation::NeuronBounds;
+pub use watchdog::within;
+pub use witness::Witness;
 
 use cede_nnv_check::{Network, Property, proof};
+use propagation::Prepared;
 use std::time::{Duration, Instant};
 
 /// How to search: 60 s, seed 0, [`Branching::Auto`] and no record, unless it is said otherwise.
@@ -67,7 +72,8 @@ impl SearchOptions {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Branching {
-    /// Inputs where they are few (at most 12), phases of ReLUs otherwise.
+    /// Inputs and phases of ReLUs by turns, until one of the two settles it. Most turns go to inputs
+    /// where they are few (at most 20), to phases otherwise.
     #[default]
     Auto,
     /// Inputs.
@@ -94,10 +100,10 @@ pub enum Answer {
     /// Proved: no input of the boxes gives an unsafe output.
     Unsat,
     /// Refuted by this input.
-    Sat(Vec<f64>),
+    Sat(Witness),
     /// Not settled in time.
     Timeout,
-    /// Not settled by this method (a box shrank to a point).
+    /// Not settled by this method: a box shrank to neighbouring numbers.
     Unknown,
 }
 
@@ -114,16 +120,20 @@ impl Answer {
     }
 
     /// The answer as in VNN-COMP's results: the word, and the witness with the network's outputs.
+    /// The inputs are exact, the outputs rounded.
     #[must_use]
-    pub fn text(&self, network: &Network) -> String {
-        let Self::Sat(x) = self else {
+    pub fn text(&self) -> String {
+        let Self::Sat(witness) = self else {
             return self.word().to_owned();
         };
-        let pairs = |name: &str, values: &[f64]| -> Vec<String> {
-            let pair = |(i, v)| format!("({name}_{i} {v:?})");
-            values.iter().enumerate().map(pair).collect()
-        };
-        let all = [pairs("X", x), pairs("Y", &network.run(x).values)].concat();
+        let inputs = witness.decimals();
+        let inputs = inputs
+            .iter()
+            .enumerate()
+            .map(|(i, x)| format!("(X_{i} {x})"));
+        let outputs = witness.outputs().iter().enumerate();
+        let outputs = outputs.map(|(i, y)| format!("(Y_{i} {y:?})"));
+        let all: Vec<String> = inputs.chain(outputs).collect();
         format!("{}\n({})", self.word(), all.join("\n"))
     }
 }
@@ -136,6 +146,8 @@ pub struct Report {
     pub answer: Answer,
     /// Regions that were bounded.
     pub regions: u64,
+    /// What was cut across by the search that settled the last query.
+    pub branching: Branching,
     /// The proof of each query, if [`Answer::Unsat`] was to be recorded.
     pub proofs: Vec<proof::Proof>,
 }
@@ -153,7 +165,8 @@ pub struct ShapeError {
     pub network: (usize, usize),
 }
 
-/// Verifies a property on the threads of the current rayon pool.
+/// Verifies a property on the threads of the current rayon pool. Ends within a second of the
+/// timeout.
 ///
 /// # Errors
 /// If the property does not fit the network.
@@ -169,19 +182,42 @@ pub fn verify(
     if shapes.property != shapes.network {
         return Err(shapes);
     }
-    let deadline = Instant::now() + options.timeout;
+    let start = Instant::now();
+    // A timeout beyond the clock's range is none.
+    let deadline = start
+        .checked_add(options.timeout)
+        .unwrap_or_else(|| start + Duration::from_secs(1 << 32));
+    let prepared = Prepared::new(network, &[]);
+    Ok(verify_prepared(
+        network, &prepared, property, options, deadline,
+    ))
+}
+
+/// [`verify`] for a property that fits the network, which is prepared.
+fn verify_prepared(
+    network: &Network,
+    prepared: &Prepared,
+    property: &Property,
+    options: SearchOptions,
+    deadline: Instant,
+) -> Report {
     let mut report = Report {
         answer: Answer::Unsat,
         regions: 0,
+        branching: options.branching,
         proofs: Vec::new(),
     };
-    if let Some(witness) = attack::attack(network, property, options.seed) {
+    let found = anything(network, property)
+        .or_else(|| attack::attack(network, prepared, property, options.seed, deadline));
+    if let Some(witness) = found {
         report.answer = Answer::Sat(witness);
-        return Ok(report);
+        return report;
     }
     for query in &property.queries {
-        let outcome = search::Problem::new(network, property, query, options, deadline).search();
+        let problem = search::Problem::new(network, prepared, query, options, deadline);
+        let outcome = problem.search();
         report.regions += outcome.regions;
+        report.branching = outcome.branching;
         match outcome.found {
             search::Found::Nothing => report.proofs.push(outcome.proof),
             search::Found::Witness(witness) => {
@@ -199,5 +235,12 @@ pub fn verify(
     if report.answer != Answer::Unsat || !options.record {
         report.proofs.clear();
     }
-    Ok(report)
+    report
+}
+
+/// A witness of a query that asks nothing of the outputs: any input.
+fn anything(network: &Network, property: &Property) -> Option<Witness> {
+    let mut queries = property.queries.iter();
+    let query = queries.find(|query| query.unsafe_set.iter().any(Vec::is_empty))?;
+    Witness::near(network, query, &query.region.lower)
 }

@@ -1,14 +1,17 @@
 //! The program `nnv`: an ONNX network and a VNN-LIB property in, a verdict and a certificate out.
 #![forbid(unsafe_code)]
 
-use cede_nnv::{Answer, Branching, SearchOptions, verify};
-use cede_nnv_check::{Certificate, onnx, vnnlib};
+use cede_nnv::{Answer, Branching, SearchOptions, verify, within};
+use cede_nnv_check::{Certificate, Source, onnx, vnnlib};
 use clap::{Parser, ValueEnum};
 use std::error::Error;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::time::Duration;
+use std::time::{Duration, Instant};
+
+/// What may pass beyond the timeout before nothing is waited for any more.
+const GRACE: Duration = Duration::from_millis(500);
 
 /// Verifies a property of a feed-forward ReLU network, in real-number semantics. Prints unsat
 /// (proved), sat (refuted; a witness follows), timeout or unknown.
@@ -21,7 +24,7 @@ struct Arguments {
     /// The property, VNN-LIB 1.0
     #[arg(long, value_name = "FILE")]
     vnnlib: PathBuf,
-    /// Give up after so many seconds
+    /// Give up after so many seconds, the reading of the files included
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
     timeout: f64,
     /// Threads to search on; all cores by default
@@ -47,7 +50,8 @@ enum Cut {
 }
 
 fn main() -> ExitCode {
-    match run(&Arguments::parse()) {
+    let arguments = Arguments::parse();
+    match in_time(arguments) {
         Ok(text) => {
             // A reader that has seen enough may close the pipe.
             let _ = writeln!(std::io::stdout(), "{text}");
@@ -61,17 +65,22 @@ fn main() -> ExitCode {
 }
 
 /// The verdict, and the witness if there is one.
-fn run(arguments: &Arguments) -> Result<String, Box<dyn Error>> {
-    let bytes = named(&arguments.onnx, std::fs::read(&arguments.onnx))?;
-    let network = named(&arguments.onnx, onnx::read(&bytes))?;
-    let text = named(
-        &arguments.vnnlib,
-        std::fs::read_to_string(&arguments.vnnlib),
-    )?;
-    let property = named(&arguments.vnnlib, vnnlib::read(&text))?;
-    let timeout = Duration::try_from_secs_f64(arguments.timeout);
+fn in_time(arguments: Arguments) -> Result<String, String> {
+    let timeout = Duration::try_from_secs_f64(arguments.timeout)
+        .map_err(|e| format!("--timeout {}: {e}", arguments.timeout))?;
+    let work = move || run(&arguments, timeout).map_err(|error| error.to_string());
+    within(timeout.saturating_add(GRACE), work).unwrap_or_else(|| Ok(Answer::Timeout.text()))
+}
+
+fn run(arguments: &Arguments, timeout: Duration) -> Result<String, Box<dyn Error>> {
+    let start = Instant::now();
+    let Arguments { onnx, vnnlib, .. } = arguments;
+    let model = named(onnx, std::fs::read(onnx))?;
+    let network = named(onnx, onnx::read(&model))?;
+    let text = named(vnnlib, std::fs::read(vnnlib))?;
+    let property = named(vnnlib, vnnlib::read_bytes(&text))?;
     let options = SearchOptions::default()
-        .timeout(timeout.map_err(|e| format!("--timeout {}: {e}", arguments.timeout))?)
+        .timeout(timeout.saturating_sub(start.elapsed()))
         .seed(arguments.seed)
         .branching(match arguments.branching {
             Cut::Auto => Branching::Auto,
@@ -84,11 +93,12 @@ fn run(arguments: &Arguments) -> Result<String, Box<dyn Error>> {
         .build()?;
     let report = pool.install(|| verify(&network, &property, options))?;
     if let (Some(path), Answer::Unsat) = (&arguments.certificate, &report.answer) {
-        let Arguments { onnx, vnnlib, .. } = arguments;
-        let certificate = Certificate::new(onnx, vnnlib, report.proofs);
+        let program = concat!("nnv ", env!("CARGO_PKG_VERSION"));
+        let (onnx, vnnlib) = (Source::new(onnx, &model), Source::new(vnnlib, &text));
+        let certificate = Certificate::new(program, onnx, vnnlib, report.proofs);
         named(path, std::fs::write(path, certificate.to_text()))?;
     }
-    Ok(report.answer.text(&network))
+    Ok(report.answer.text())
 }
 
 /// Names the file in an error.

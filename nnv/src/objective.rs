@@ -5,17 +5,19 @@
 //! weights and of lower slopes in [0, 1] gives a sound bound, and so does every choice of
 //! multipliers ≥ 0 on the assumed phases (±z ≤ 0 there). The best choice is found by projected
 //! supergradient ascent, which is the dual of the linear programme over the neurons' triangles
-//! (Wong and Kolter 2018; α-CROWN, Xu et al. 2021; β-CROWN, Wang et al. 2021).
+//! (Wong and Kolter 2018; α-CROWN, Xu et al. 2021; β-CROWN, Wang et al. 2021). Where rounding is
+//! all that is left between a bound and zero, exact arithmetic may decide about the choice.
 
 mod programme;
 
 use super::kernel::{add_scaled, dot};
-use super::propagation::Workspace;
+use super::propagation::{Unbounded, Workspace, in_time};
 use super::relaxation::Symbols;
 use cede_nnv_check::InputBox;
 use cede_nnv_check::proof::Refutation;
-use cede_nnv_check::rounding::UNDERFLOW;
+use cede_nnv_check::rounding::underflow;
 use std::ops::Range;
+use std::time::{Duration, Instant};
 
 /// Memory of the ascent, kept between boxes.
 #[derive(Default)]
@@ -33,6 +35,16 @@ pub(super) struct Ascent {
     /// The relaxation's minimiser: the constant, the inputs, the symbols.
     point: Vec<f64>,
     steps: Vec<f64>,
+    /// The choice that came nearest to refuting but for rounding.
+    undecided: Option<Undecided>,
+}
+
+/// A choice of weights and slopes whose bound is above zero, or not a number, but for rounding.
+struct Undecided {
+    /// The bound without its errors; NaN where something overflowed.
+    least: f64,
+    weights: Vec<f64>,
+    slopes: Vec<f64>,
 }
 
 /// Most steps of the ascent; more where phases are assumed, whose multipliers have no upper limit.
@@ -46,18 +58,19 @@ const MARGIN: f64 = 64.0;
 impl Ascent {
     /// The best bound found for the conjunction of the atoms at these positions of the workspace:
     /// if it is positive, the region misses the conjunction, and the weights and slopes are those
-    /// that show it. Otherwise they are the last ones tried.
+    /// that show it. Otherwise they are the last ones tried. There must be an atom.
+    ///
+    /// # Errors
+    /// If the deadline passed.
     #[inline(always)]
     pub(super) fn bound(
         &mut self,
         workspace: &Workspace,
         region: &InputBox,
         atoms: Range<usize>,
-    ) -> f64 {
-        if atoms.is_empty() {
-            // Nothing has to hold for an empty conjunction: it is the whole space.
-            return f64::NEG_INFINITY;
-        }
+        deadline: Option<Instant>,
+    ) -> Result<f64, Unbounded> {
+        self.undecided = None;
         let symbols = &workspace.symbols;
         self.load(workspace, atoms);
         let mut best = (f64::NEG_INFINITY, 0);
@@ -67,7 +80,7 @@ impl Ascent {
             self.weights[form] = 1.0;
             let bound = self.evaluate(symbols, region);
             if bound > 0.0 {
-                return bound;
+                return Ok(bound);
             }
             if form < self.atoms && bound > best.0 {
                 best = (bound, form);
@@ -82,18 +95,19 @@ impl Ascent {
         let (mut bound, mut last) = (first, first);
         let phases = !workspace.assumed.is_empty();
         for step in 0..if phases { STEPS_WITH_PHASES } else { STEPS } {
+            in_time(deadline)?;
             self.climb(symbols, 1.0 / (1.0 + step as f64), last);
             last = self.evaluate(symbols, region);
             bound = bound.max(last);
             if bound > 0.0 {
-                return bound;
+                return Ok(bound);
             }
             // Not worth more steps if the gain so far, kept up, would not reach zero.
             if !phases && bound - first < 0.08 * (step + 1) as f64 * -first {
                 break;
             }
         }
-        bound
+        Ok(bound)
     }
 
     /// As [`Self::bound`] after it failed on a region on which every ReLU is stable: there the
@@ -104,10 +118,11 @@ impl Ascent {
         &mut self,
         workspace: &Workspace,
         region: &InputBox,
+        time: Duration,
     ) -> Result<f64, Option<Vec<f64>>> {
         let symbols = &workspace.symbols;
         let forms = &self.forms[..self.weights.len()];
-        if let Some(weights) = programme::best_weights(forms, self.atoms, region) {
+        if let Some(weights) = programme::best_weights(forms, self.atoms, region, time) {
             self.weights = weights;
             let bound = self.evaluate(symbols, region);
             if bound > 0.0 {
@@ -118,6 +133,7 @@ impl Ascent {
             &self.forms[..self.weights.len()],
             self.atoms,
             region,
+            time,
         ))
     }
 
@@ -151,13 +167,13 @@ impl Ascent {
         let g = symbols.relative_error();
         self.form.clear();
         self.form.resize(symbols.columns(), 0.0);
-        let mut errors = UNDERFLOW;
+        let mut errors = symbols.underflow(8 * self.weights.len());
         for ((form, &(error, size)), &weight) in
             self.forms.iter().zip(&self.sizes).zip(&self.weights)
         {
             if weight > 0.0 {
                 add_scaled(&mut self.form, form, weight);
-                errors += weight * (error + 2.0 * g * size);
+                errors += weight * (error + 2.0 * g * size + underflow(4, 1.0));
             }
         }
         self.coefficients.clear();
@@ -175,8 +191,8 @@ impl Ascent {
                 (lines.upper_slope, lines.upper_offset)
             };
             let factor = c * slope;
-            let (error, size) = symbols.size(symbol);
-            errors += factor.abs() * (error + g * size) + c.abs() * g * (offset.abs() + size);
+            let (per_factor, per_coefficient) = symbols.costs(symbol);
+            errors += factor.abs() * per_factor + c.abs() * per_coefficient;
             self.form[0] += c * offset;
             if factor != 0.0 {
                 add_scaled(&mut self.form, symbols.row(symbol), factor);
@@ -194,7 +210,54 @@ impl Ascent {
             least += c * x;
             self.point.push(x);
         }
-        least - errors * MARGIN
+        let bound = least - errors * MARGIN;
+        // NaN is undecided as well.
+        if !(bound > 0.0 || least + errors * MARGIN < 0.0) {
+            let nearer = |old: &Undecided| old.least.is_nan() || least > old.least;
+            if self.undecided.as_ref().is_none_or(nearer) {
+                self.undecided = Some(Undecided {
+                    least,
+                    weights: self.weights.clone(),
+                    slopes: self.slopes.clone(),
+                });
+            }
+        }
+        if bound.is_finite() {
+            bound
+        } else {
+            f64::NEG_INFINITY
+        }
+    }
+
+    /// After [`Self::bound`] failed: claims that only rounding, or overflow, kept it from making.
+    pub(super) fn undecided(&mut self, workspace: &Workspace, conjunction: u32) -> Vec<Refutation> {
+        let Some(undecided) = self.undecided.take() else {
+            return Vec::new();
+        };
+        let Undecided {
+            least,
+            weights,
+            slopes,
+        } = undecided;
+        if least.is_finite() {
+            let (weights, slopes) = (
+                std::mem::replace(&mut self.weights, weights),
+                std::mem::replace(&mut self.slopes, slopes),
+            );
+            let claim = self.refutation(workspace, conjunction, 0.0);
+            (self.weights, self.slopes) = (weights, slopes);
+            return vec![claim];
+        }
+        let alone = |atom| Refutation {
+            conjunction,
+            weights: (0..self.atoms)
+                .map(|i| f64::from(u8::from(i == atom)))
+                .collect(),
+            multipliers: Vec::new(),
+            slopes: Vec::new(),
+            bound: 0.0,
+        };
+        (0..self.atoms).map(alone).collect()
     }
 
     /// One step up the supergradient at the present weights and slopes.
@@ -282,7 +345,12 @@ impl Ascent {
         bound: f64,
     ) -> Refutation {
         let symbols = &workspace.symbols;
-        let unusual = |&s: &usize| self.slopes[s] != symbols.lines(s).lower_slope;
+        // Where rounding may decide which slope is the usual one, others may come to another.
+        let unusual = |&s: &usize| {
+            let (lines, (l, u)) = (symbols.lines(s), symbols.interval(s));
+            let doubt = 1e-6 * (u - l) + 1e6 * symbols.costs(s).0;
+            self.slopes[s] != lines.lower_slope || lines.free && (l + u).abs() <= doubt
+        };
         let (weights, multipliers) = self.weights.split_at(self.atoms);
         let assumed = workspace.assumed.iter().zip(multipliers);
         Refutation {

@@ -1,13 +1,14 @@
 //! Sound bounds for every neuron and for the atoms of a query on a box, layer by layer.
 
+mod composition;
 mod prepared;
 
-use super::kernel::{LANES, Lane, compose, padded};
+use super::kernel::{LANES, Lane, padded};
 use super::relaxation::{Lines, Symbols};
-use cede_nnv_check::rounding::{SPARE, UNDERFLOW};
+use cede_nnv_check::rounding::{SPARE, underflow};
 use cede_nnv_check::{Activation, AffineEnclosure, InputBox};
-pub(crate) use prepared::Prepared;
-use prepared::PreparedLayer;
+pub(crate) use prepared::{Prepared, PreparedLayer, Weights};
+use std::time::Instant;
 
 /// Least and greatest value of a pre-activation.
 pub type NeuronBounds = (f64, f64);
@@ -15,8 +16,14 @@ pub type NeuronBounds = (f64, f64);
 /// An assumed phase of a ReLU: which neuron, and whether its pre-activation is ≥ 0 (else ≤ 0).
 pub(super) type Phase = (u32, bool);
 
-/// The region is empty: two bounds of one neuron contradict each other.
-pub(super) struct Empty;
+/// Why a region has no bounds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Unbounded {
+    /// It is empty: two bounds of one neuron contradict each other.
+    Empty,
+    /// The deadline passed.
+    Late,
+}
 
 /// Linear forms of some neurons over the symbols, a column of lanes for each symbol.
 #[derive(Default)]
@@ -27,6 +34,17 @@ struct Forms {
     coefficients: Vec<f64>,
     errors: Vec<f64>,
     sizes: Vec<f64>,
+}
+
+/// What stands for a neuron's output.
+#[derive(Clone, Copy)]
+enum Place {
+    /// Nothing: it is 0.
+    Off,
+    /// A form of the layer before, by lane.
+    Active(usize),
+    /// A symbol, by column.
+    Direct(usize),
 }
 
 /// All the memory that bounding a box takes, kept between boxes.
@@ -45,6 +63,10 @@ pub(super) struct Workspace {
     active: Vec<usize>,
     compact_rows: Vec<f64>,
     compact_weights: Vec<f64>,
+    /// Where each neuron of the layer before is, and the products of a sparse layer: lane, lane of
+    /// the layer before, weight.
+    places: Vec<Place>,
+    products: Vec<(usize, usize, f64)>,
     block: Vec<Lane>,
     open: Vec<usize>,
 }
@@ -55,8 +77,13 @@ impl Workspace {
     /// [`Self::atom`].
     ///
     /// # Errors
-    /// If the bounds show that nothing in the box satisfies what `bounds` assumed.
+    /// If the bounds show that nothing in the box satisfies what `bounds` assumed, or the deadline
+    /// passed.
     #[inline(always)]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "a region, and what is asked of it"
+    )]
     pub(super) fn bound(
         &mut self,
         network: &Prepared,
@@ -65,7 +92,8 @@ impl Workspace {
         bounds: &mut [NeuronBounds],
         phases: &[Phase],
         atoms: &[usize],
-    ) -> Result<(), Empty> {
+        deadline: Option<Instant>,
+    ) -> Result<(), Unbounded> {
         self.assumed.clear();
         self.symbols.restart(&region.lower, &region.upper);
         self.shares.clear();
@@ -83,12 +111,12 @@ impl Workspace {
             self.forms.neurons.clear();
             if index + 1 == network.layers.len() {
                 self.forms.neurons.extend_from_slice(atoms);
-                self.compose_layer(layer);
+                self.compose_layer(layer, deadline)?;
                 break;
             }
             if layer.activation == Activation::Identity {
                 self.forms.neurons.extend(0..layer.outputs);
-                self.compose_layer(layer);
+                self.compose_layer(layer, deadline)?;
                 self.direct.clear();
                 self.active.clear();
                 self.active.extend(0..layer.outputs);
@@ -100,8 +128,8 @@ impl Workspace {
                 layer.activation != Activation::Relu || own[*i].1 > 0.0 || is_assumed(*i)
             };
             self.forms.neurons.extend((0..layer.outputs).filter(alive));
-            self.compose_layer(layer);
-            self.tighten(layer, region, own)?;
+            self.compose_layer(layer, deadline)?;
+            self.tighten(layer, region, own, deadline)?;
             self.release(layer, own, phases, network.enclose);
         }
         Ok(())
@@ -110,6 +138,7 @@ impl Workspace {
     /// Adds an input of the network that is enclosed over the region's variables; gives its column.
     fn push_input(&mut self, region: &InputBox, enclosure: &AffineEnclosure) -> usize {
         let row = std::iter::once(enclosure.constant).chain(enclosure.slopes.iter().copied());
+        let row_length = enclosure.slopes.len() + 1;
         let size = row
             .clone()
             .zip(self.symbols.most())
@@ -124,91 +153,10 @@ impl Workspace {
         self.symbols.push(
             NO_NEURON,
             row,
-            (0.0, size * SPARE),
+            (0.0, size * SPARE + underflow(row_length, 1.0)),
             enclosure.affine_range(region),
             Lines::enclosure(enclosure, region),
         )
-    }
-
-    /// The forms of the wanted neurons of a layer from those of the layer before.
-    #[inline(always)]
-    fn compose_layer(&mut self, layer: &PreparedLayer) {
-        let (wanted, active) = (self.forms.neurons.len(), self.active.len());
-        let lanes = padded(wanted);
-        let columns = self.symbols.columns();
-        let before = if active == 0 {
-            0
-        } else {
-            self.previous.coefficients.len() / padded(self.previous.neurons.len())
-        };
-
-        self.compact_weights.clear();
-        for &lane in &self.active {
-            let weights =
-                &layer.columns[self.previous.neurons[lane] * layer.outputs..][..layer.outputs];
-            self.compact_weights
-                .extend(self.forms.neurons.iter().map(|&i| weights[i]));
-            self.compact_weights
-                .resize(self.compact_weights.len() + lanes - wanted, 0.0);
-        }
-        self.compact_rows.clear();
-        let stride = padded(self.previous.neurons.len());
-        for column in 0..before {
-            let row = &self.previous.coefficients[column * stride..(column + 1) * stride];
-            self.compact_rows
-                .extend(self.active.iter().map(|&lane| row[lane]));
-        }
-
-        let z = &mut self.forms.coefficients;
-        z.clear();
-        z.resize(columns * lanes, 0.0);
-        if lanes == 0 {
-            return;
-        }
-        compose(
-            &self.compact_rows,
-            &self.compact_weights,
-            active,
-            lanes,
-            &mut z[..before * lanes],
-        );
-        let errors = &mut self.forms.errors;
-        errors.clear();
-        errors.resize(lanes, UNDERFLOW);
-        for (&lane, weights) in self
-            .active
-            .iter()
-            .zip(self.compact_weights.chunks_exact(lanes))
-        {
-            let carried = self.previous.errors[lane] * (1.0 + 1e-9)
-                + layer.relative_error * self.previous.sizes[lane];
-            for (error, w) in errors.iter_mut().zip(weights) {
-                *error += w.abs() * carried;
-            }
-        }
-        for &(neuron, column) in &self.direct {
-            let weights = &layer.columns[neuron * layer.outputs..][..layer.outputs];
-            let uncertain = layer.uncertainty * self.symbols.most()[column];
-            for (lane, &i) in self.forms.neurons.iter().enumerate() {
-                z[column * lanes + lane] = weights[i];
-                errors[lane] += weights[i].abs() * uncertain;
-            }
-        }
-        for (lane, &i) in self.forms.neurons.iter().enumerate() {
-            z[lane] += layer.bias[i];
-            errors[lane] = (errors[lane] + layer.relative_error * layer.bias[i].abs()) * SPARE;
-        }
-        let sizes = &mut self.forms.sizes;
-        sizes.clear();
-        sizes.resize(lanes, 0.0);
-        for (row, &most) in z.chunks_exact(lanes).zip(self.symbols.most()) {
-            for (size, c) in sizes.iter_mut().zip(row) {
-                *size += c.abs() * most;
-            }
-        }
-        for size in sizes {
-            *size *= SPARE;
-        }
     }
 
     /// Bounds the neurons of the layer that are not known to be stable.
@@ -218,7 +166,8 @@ impl Workspace {
         layer: &PreparedLayer,
         region: &InputBox,
         bounds: &mut [NeuronBounds],
-    ) -> Result<(), Empty> {
+        deadline: Option<Instant>,
+    ) -> Result<(), Unbounded> {
         let inputs = region.lower.len();
         let open = |i: usize| {
             layer.activation != Activation::Relu || (bounds[i].0 < 0.0 && bounds[i].1 > 0.0)
@@ -229,13 +178,14 @@ impl Workspace {
         let first_share = self.shares.len();
         // A lane for each lower bound, and one for the lower bound of the negated form.
         for chunk in lanes.chunks(LANES / 2) {
+            in_time(deadline)?;
             let least = self.bound_lanes(chunk, region);
             for (k, &lane) in chunk.iter().enumerate() {
                 let (l, u) = &mut bounds[self.forms.neurons[lane]];
                 *l = l.max(least[2 * k]);
                 *u = u.min(-least[2 * k + 1]);
                 if *l > *u {
-                    return Err(Empty);
+                    return Err(Unbounded::Empty);
                 }
                 let start = self.shares.len();
                 let reach = |i: usize| {
@@ -277,6 +227,7 @@ impl Workspace {
         let g = self.symbols.relative_error();
         let mut errors = [0.0; LANES];
         for (k, &lane) in lanes.iter().enumerate() {
+            // The underflow of this product is among what the symbols charge.
             let error = self.forms.errors[lane] + g * self.forms.sizes[lane];
             errors[2 * k] = error;
             errors[2 * k + 1] = error;
@@ -339,6 +290,15 @@ impl Workspace {
                 .map(|row| row[k]),
         );
         (self.forms.errors[k], self.forms.sizes[k])
+    }
+}
+
+/// Fails after the deadline.
+pub(super) fn in_time(deadline: Option<Instant>) -> Result<(), Unbounded> {
+    if deadline.is_some_and(|deadline| Instant::now() > deadline) {
+        Err(Unbounded::Late)
+    } else {
+        Ok(())
     }
 }
 

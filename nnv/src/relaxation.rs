@@ -13,9 +13,16 @@
 //! r += f·row costs at most |f|·e plus a rounding of each coefficient, which over all symbols is
 //! at most 3u·(size of r + |f|·m); sizes only add up, so g·(final size) with g = γ of the number
 //! of substitutions covers all of them and the last evaluation on the box as well.
+//!
+//! **Underflow.** A product that is not normal is off by up to 2⁻¹⁰⁷⁵ besides, and what it is
+//! multiplied by may be large: a coefficient by its symbol, a slope by its pre-activation. All of
+//! these together are at most the [reach](Symbols::underflow) of the region. An offset, or a term
+//! of an error, is charged where it is multiplied.
+//!
+//! **Overflow.** Infinities and NaN stay in the sums, and a bound that is not finite is none.
 
 use super::kernel::{LANES, Lane, add_row};
-use cede_nnv_check::rounding::{SPARE, UNDERFLOW, gamma};
+use cede_nnv_check::rounding::{SPARE, gamma, underflow};
 use cede_nnv_check::{AffineEnclosure, InputBox};
 
 /// Two lines that enclose an activation on an interval: below, slope·z + offset ≤ f(z), above
@@ -94,6 +101,8 @@ pub(super) struct Symbols {
     intervals: Vec<(f64, f64)>,
     /// Which neuron (over all activations of the network) each symbol is.
     neurons: Vec<usize>,
+    /// Sum of all of `most` and of the sizes of all rows.
+    reach: f64,
 }
 
 impl Symbols {
@@ -114,6 +123,7 @@ impl Symbols {
                 .zip(upper)
                 .map(|(lo, hi)| lo.abs().max(hi.abs())),
         );
+        self.reach = self.most.iter().sum();
     }
 
     /// Adds a symbol, the output of a neuron that is bounded by `lines` where its pre-activation
@@ -128,9 +138,10 @@ impl Symbols {
     ) -> usize {
         self.rows.extend(row);
         self.ends.push(self.rows.len());
-        self.sizes
-            .push((error, size + interval.0.abs().max(interval.1.abs())));
+        let size = size + interval.0.abs().max(interval.1.abs());
+        self.sizes.push((error, size));
         self.most.push(lines.most);
+        self.reach += size + lines.most;
         self.lines.push(lines);
         self.intervals.push(interval);
         self.neurons.push(neuron);
@@ -177,11 +188,6 @@ impl Symbols {
         self.neurons[symbol]
     }
 
-    /// The error and size of a symbol's row.
-    pub(super) fn size(&self, symbol: usize) -> (f64, f64) {
-        self.sizes[symbol]
-    }
-
     /// Largest absolute value of each column's symbol.
     pub(super) fn most(&self) -> &[f64] {
         &self.most
@@ -192,20 +198,37 @@ impl Symbols {
         gamma(2 * self.columns() + 16)
     }
 
+    /// What underflow can cost while so many more products than there are columns are taken, each
+    /// multiplied by no more than all symbols and pre-activations together.
+    pub(super) fn underflow(&self, products: usize) -> f64 {
+        underflow(products + 8 * (self.columns() + 4), self.reach * SPARE)
+    }
+
+    /// What replacing a symbol may cost in rounding: for each unit of the factor by which its row is
+    /// added, and for each unit of its coefficient.
+    #[inline(always)]
+    pub(super) fn costs(&self, symbol: usize) -> (f64, f64) {
+        let g = self.relative_error();
+        let (lines, (error, size)) = (&self.lines[symbol], self.sizes[symbol]);
+        let offsets = lines.upper_offset.abs() + lines.lower_offset.abs();
+        (
+            error + g * size + underflow(2, 1.0),
+            g * (offsets + size) + underflow(8, 1.0),
+        )
+    }
+
     /// Replaces every symbol of the forms in `block` by its bounding line, last to first, so that
     /// what is left over the constant and the inputs bounds each form from below, up to the
     /// `errors` that are added to.
     #[inline(always)]
     pub(super) fn substitute(&self, block: &mut [Lane], errors: &mut Lane) {
-        let g = self.relative_error();
         for symbol in (0..self.count()).rev() {
             let coefficients = block[self.fixed + symbol];
+            if coefficients == [0.0; LANES] {
+                continue;
+            }
             let lines = &self.lines[symbol];
-            let (error, size) = self.sizes[symbol];
-            let (per_factor, per_coefficient) = (
-                error + g * size,
-                g * (lines.upper_offset.abs() + lines.lower_offset.abs() + size),
-            );
+            let (per_factor, per_coefficient) = self.costs(symbol);
             let mut factors = [0.0; LANES];
             for i in 0..LANES {
                 let c = coefficients[i];
@@ -222,7 +245,8 @@ impl Symbols {
         }
     }
 
-    /// The least value of each form over the box, errors subtracted: a sound lower bound.
+    /// The least value of each form over the box, errors subtracted: a sound lower bound, −∞ where
+    /// something overflowed.
     #[inline(always)]
     pub(super) fn least(
         &self,
@@ -238,8 +262,12 @@ impl Symbols {
                 least[i] += if c > 0.0 { c * lo } else { c * hi };
             }
         }
+        let underflow = self.underflow(0);
         for i in 0..LANES {
-            least[i] -= errors[i] * SPARE + UNDERFLOW;
+            least[i] -= errors[i] * SPARE + underflow;
+            if !least[i].is_finite() {
+                least[i] = f64::NEG_INFINITY;
+            }
         }
         least
     }

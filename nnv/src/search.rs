@@ -1,4 +1,8 @@
-//! Branch and bound over the inputs, and over the phases of ReLUs where there are many inputs.
+//! Branch and bound over the inputs, and over the phases of ReLUs.
+//!
+//! Which of the two pays is not known beforehand, so both are tried in turn, with more and more
+//! regions: the one that is likelier to pay for the number of inputs gets most of them. The first
+//! that settles the query ends it.
 //!
 //! Work goes out in rounds: every task takes one region and searches below it, depth first, for a
 //! fixed number of regions; what it leaves open comes back in order. So the answer, the witness,
@@ -7,14 +11,14 @@
 
 mod node;
 
-use super::attack::{confirmed, worst};
 use super::forward::Runner;
 use super::objective::Ascent;
-use super::propagation::{Prepared, Workspace, is_unstable};
+use super::propagation::{Prepared, Unbounded, Workspace, is_unstable};
+use super::witness::{Witness, is_near};
 use super::{Branching, SearchOptions};
-use cede_nnv_check::Network;
-use cede_nnv_check::proof::{Cell, Proof, Split};
-use cede_nnv_check::{Halfspace, Property, Query};
+use cede_nnv_check::check::{confirms, refutes_exactly};
+use cede_nnv_check::proof::{Cell, Proof, Refutation, Split};
+use cede_nnv_check::{Halfspace, InputBox, Network, Query};
 use node::{Node, split_input, split_phase};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -25,8 +29,8 @@ use std::time::Instant;
 pub(super) enum Found {
     /// No point of any region is in the unsafe set.
     Nothing,
-    /// This point is, confirmed with all rounding accounted for.
-    Witness(Vec<f64>),
+    /// This point is.
+    Witness(Witness),
     /// The deadline passed.
     TimeOut,
     /// No witness was found, but some region could not be split any further nor be refuted.
@@ -37,17 +41,22 @@ pub(super) enum Found {
 const TASK: usize = 200;
 /// Tasks of one round.
 const ROUND: usize = 64;
-/// Up to so many inputs, boxes are split across inputs; beyond, across phases of ReLUs.
+/// Up to so many inputs, cutting across them is the likelier to pay; beyond, across phases.
+const SOME_INPUTS: usize = 20;
+/// Up to so many, it nearly always does.
 const FEW_INPUTS: usize = 12;
+/// Regions of the likelier way's first turn; they double from turn to turn.
+const FIRST_TURN: u64 = 1 << 12;
+/// The other way's turn is so many times shorter.
+const UNLIKELIER: u64 = 4;
 
 /// A query to be searched.
 pub(super) struct Problem<'a> {
-    pub(super) network: &'a Network,
-    pub(super) property: &'a Property,
-    pub(super) query: &'a Query,
-    pub(super) prepared: Prepared,
-    pub(super) deadline: Instant,
-    pub(super) options: SearchOptions,
+    network: &'a Network,
+    query: &'a Query,
+    prepared: Prepared,
+    deadline: Instant,
+    options: SearchOptions,
 }
 
 /// What a search gives.
@@ -57,12 +66,24 @@ pub(super) struct Outcome {
     pub(super) regions: u64,
     /// The tree; empty unless it was to be recorded.
     pub(super) proof: Proof,
+    /// What was cut across by the search that settled it.
+    pub(super) branching: Branching,
+}
+
+/// A search by one way of branching, as far as it has come.
+struct Tree {
+    branching: Branching,
+    stack: Vec<Node>,
+    proof: Proof,
+    regions: u64,
+    stuck: bool,
 }
 
 impl<'a> Problem<'a> {
+    /// `prepared` is the network, before any atoms.
     pub(super) fn new(
         network: &'a Network,
-        property: &'a Property,
+        prepared: &Prepared,
         query: &'a Query,
         options: SearchOptions,
         deadline: Instant,
@@ -70,9 +91,8 @@ impl<'a> Problem<'a> {
         let atoms: Vec<&Halfspace> = query.unsafe_set.iter().flatten().collect();
         Self {
             network,
-            property,
             query,
-            prepared: Prepared::new(network, &atoms),
+            prepared: prepared.with_atoms(network.outputs(), &atoms),
             deadline,
             options,
         }
@@ -80,41 +100,91 @@ impl<'a> Problem<'a> {
 
     /// Searches the query's whole box.
     pub(super) fn search(&self) -> Outcome {
-        let mut outcome = Outcome {
-            found: Found::Nothing,
-            regions: 0,
-            proof: Proof::default(),
+        let inputs = self.query.region.lower.len();
+        let ways: &[Branching] = match self.options.branching {
+            Branching::Auto if inputs <= SOME_INPUTS => &[Branching::Inputs, Branching::Phases],
+            Branching::Auto => &[Branching::Phases, Branching::Inputs],
+            Branching::Inputs => &[Branching::Inputs],
+            Branching::Phases => &[Branching::Phases],
         };
-        outcome.proof.cells.push(Cell::default());
-        let mut stack = vec![Node {
+        let mut trees: Vec<Tree> = ways.iter().map(|&way| self.tree(way)).collect();
+        let mut turn = if inputs <= FEW_INPUTS {
+            8 * FIRST_TURN
+        } else {
+            FIRST_TURN
+        };
+        loop {
+            let mut open = false;
+            for (rank, tree) in trees.iter_mut().enumerate() {
+                let regions = if rank == 0 { turn } else { turn / UNLIKELIER };
+                let found = self.advance(tree, regions);
+                open |= found.is_none() && !tree.stack.is_empty();
+                if let Some(found) = found {
+                    let (branching, proof) = (tree.branching, std::mem::take(&mut tree.proof));
+                    return Outcome {
+                        found,
+                        regions: trees.iter().map(|tree| tree.regions).sum(),
+                        proof,
+                        branching,
+                    };
+                }
+            }
+            if !open {
+                return Outcome {
+                    found: Found::Stuck,
+                    regions: trees.iter().map(|tree| tree.regions).sum(),
+                    proof: Proof::default(),
+                    branching: self.options.branching,
+                };
+            }
+            turn *= 2;
+        }
+    }
+
+    fn tree(&self, branching: Branching) -> Tree {
+        let mut proof = Proof::default();
+        proof.cells.push(Cell::default());
+        let root = Node {
             region: self.query.region.clone(),
             bounds: vec![(f64::NEG_INFINITY, f64::INFINITY); self.prepared.neurons].into(),
             phases: Box::default(),
             open: (0_u32..).take(self.query.unsafe_set.len()).collect(),
             cell: 0,
-        }];
-        while !stack.is_empty() {
-            let batch = stack.split_off(stack.len().saturating_sub(ROUND));
+        };
+        Tree {
+            branching,
+            stack: vec![root],
+            proof,
+            regions: 0,
+            stuck: false,
+        }
+    }
+
+    /// Goes on with a search for about so many regions; what settles the query, if anything does.
+    fn advance(&self, tree: &mut Tree, regions: u64) -> Option<Found> {
+        let end = tree.regions + regions;
+        while !tree.stack.is_empty() {
+            if tree.regions >= end {
+                return None;
+            }
+            let batch = tree.stack.split_off(tree.stack.len().saturating_sub(ROUND));
             let roots: Vec<usize> = batch.iter().map(|node| node.cell).collect();
             let work = |searcher: &mut Searcher<'_>, node| searcher.work(node);
             let done: Vec<Done> = batch
                 .into_par_iter()
-                .map_init(|| Searcher::new(self), work)
+                .map_init(|| Searcher::new(self, tree.branching), work)
                 .collect();
-            outcome.regions += done.iter().map(|d| d.regions).sum::<u64>();
+            tree.regions += done.iter().map(|d| d.regions).sum::<u64>();
             for (task, root) in done.into_iter().zip(roots) {
                 match &task.found {
                     Found::Nothing => {}
-                    Found::Stuck => outcome.found = Found::Stuck,
-                    end => {
-                        outcome.found = end.clone();
-                        return outcome;
-                    }
+                    Found::Stuck => tree.stuck = true,
+                    end => return Some(end.clone()),
                 }
-                stack.extend(graft(task, root, &mut outcome.proof));
+                tree.stack.extend(graft(task, root, &mut tree.proof));
             }
         }
-        outcome
+        (!tree.stuck).then_some(Found::Nothing)
     }
 
     /// Where the atoms of each conjunction lie among all atoms.
@@ -156,16 +226,20 @@ struct Done {
     regions: u64,
 }
 
+/// The deadline passed.
+struct Late;
+
 enum Step {
     Refuted,
     Split(Split, [Node; 2]),
     /// Neither refuted nor divisible.
     Stuck,
-    Witness(Vec<f64>),
+    Witness(Witness),
 }
 
 struct Searcher<'a> {
     problem: &'a Problem<'a>,
+    by_phase: bool,
     workspace: Workspace,
     ascent: Ascent,
     runner: Runner<'a>,
@@ -174,12 +248,13 @@ struct Searcher<'a> {
 }
 
 impl<'a> Searcher<'a> {
-    fn new(problem: &'a Problem<'a>) -> Self {
+    fn new(problem: &'a Problem<'a>, branching: Branching) -> Self {
         Self {
             problem,
+            by_phase: branching == Branching::Phases,
             workspace: Workspace::default(),
             ascent: Ascent::default(),
-            runner: Runner::new(problem.network),
+            runner: Runner::new(problem.network, &problem.prepared),
             scores: Vec::new(),
             slack: Vec::new(),
         }
@@ -201,14 +276,14 @@ impl<'a> Searcher<'a> {
         while done.regions < TASK as u64
             && let Some(node) = done.left.pop()
         {
-            if Instant::now() > self.problem.deadline {
-                done.found = Found::TimeOut;
-                break;
-            }
             done.regions += 1;
             let place = node.cell;
             let mut cell = Cell::default();
-            match arch.dispatch(|| self.step(node, &mut cell)) {
+            let Ok(step) = arch.dispatch(|| self.step(node, &mut cell)) else {
+                done.found = Found::TimeOut;
+                break;
+            };
+            match step {
                 Step::Refuted => {}
                 Step::Stuck => done.found = Found::Stuck,
                 Step::Split(split, mut children) => {
@@ -234,86 +309,129 @@ impl<'a> Searcher<'a> {
     }
 
     /// Bounds one region, and splits it if that does not settle it.
+    ///
+    /// # Errors
+    /// If the deadline passed.
     #[inline(always)]
-    fn step(&mut self, mut node: Node, cell: &mut Cell) -> Step {
+    fn step(&mut self, mut node: Node, cell: &mut Cell) -> Result<Step, Late> {
         let problem = self.problem;
+        let deadline = Some(problem.deadline);
         let atoms: Vec<usize> = node
             .open
             .iter()
             .flat_map(|&c| problem.atoms_of(c))
             .collect();
-        if self
-            .workspace
-            .bound(
-                &problem.prepared,
-                &node.region,
-                &[],
-                &mut node.bounds,
-                &node.phases,
-                &atoms,
-            )
-            .is_err()
-        {
-            cell.empty = true;
-            return Step::Refuted;
+        let record = problem.options.record;
+        let before = (record && !node.phases.is_empty()).then(|| node.bounds.clone());
+        let bounded = self.workspace.bound(
+            &problem.prepared,
+            &node.region,
+            &[],
+            &mut node.bounds,
+            &node.phases,
+            &atoms,
+            deadline,
+        );
+        match bounded {
+            Ok(()) => {}
+            Err(Unbounded::Late) => return Err(Late),
+            Err(Unbounded::Empty) => {
+                if let Some(before) = before
+                    && !self.is_confirmed(&node, None)
+                {
+                    node.bounds = before;
+                    let halves = split_input(node, &[]);
+                    return Ok(halves.map_or(Step::Stuck, |(split, two)| Step::Split(split, two)));
+                }
+                cell.empty = true;
+                return Ok(Step::Refuted);
+            }
         }
         self.scores.clear();
         self.scores.resize(node.region.lower.len(), 0.0);
         self.slack.clear();
         self.slack.resize(self.workspace.symbols.count(), 0.0);
         let mut open = Vec::new();
+        let mut candidates = Vec::new();
         let mut first = 0;
         for &conjunction in &node.open {
             let count = problem.atoms_of(conjunction).len();
             let mut bound = self
                 .ascent
-                .bound(&self.workspace, &node.region, first..first + count);
+                .bound(
+                    &self.workspace,
+                    &node.region,
+                    first..first + count,
+                    deadline,
+                )
+                .map_err(|_| Late)?;
             first += count;
             let mut candidate = self.ascent.minimiser(node.region.lower.len()).to_vec();
             if bound <= 0.0 && self.workspace.symbols.count() == 0 {
-                match self.ascent.finish(&self.workspace, &node.region) {
+                let time = problem.deadline.saturating_duration_since(Instant::now());
+                match self.ascent.finish(&self.workspace, &node.region, time) {
                     Ok(found) => bound = found,
                     Err(point) => candidate = point.unwrap_or(candidate),
                 }
             }
             if bound > 0.0 {
-                if problem.options.record {
-                    cell.refuted
-                        .push(self.ascent.refutation(&self.workspace, conjunction, bound));
+                if !record {
+                    continue;
+                }
+                let claim = self.ascent.refutation(&self.workspace, conjunction, bound);
+                if self.is_confirmed(&node, Some(&claim)) {
+                    cell.refuted.push(claim);
+                    continue;
+                }
+            }
+            let set = &problem.query.unsafe_set[conjunction as usize];
+            if is_near(set, self.runner.run(&candidate))
+                && let Some(witness) = Witness::near(problem.network, problem.query, &candidate)
+            {
+                return Ok(Step::Witness(witness));
+            }
+            let exactly = |claim: &Refutation| {
+                let Node { region, phases, .. } = &node;
+                refutes_exactly(problem.network, problem.query, region, phases, claim)
+            };
+            let claims = self.ascent.undecided(&self.workspace, conjunction);
+            if let Some(claim) = claims.into_iter().find(exactly) {
+                if record {
+                    cell.refuted.push(claim);
                 }
                 continue;
-            }
-            let y = self.runner.run(&candidate);
-            if worst(&problem.query.unsafe_set[conjunction as usize], y).0 < 0.0
-                && let Some(witness) = confirmed(problem.network, problem.property, &candidate)
-            {
-                return Step::Witness(witness);
             }
             self.ascent
                 .blame(&self.workspace, &mut self.slack, &mut self.scores);
             open.push(conjunction);
+            candidates.push(candidate);
         }
         if open.is_empty() {
-            return Step::Refuted;
+            return Ok(Step::Refuted);
         }
         node.open = open.into();
-        let by_phase = match problem.options.branching {
-            Branching::Auto => self.scores.len() > FEW_INPUTS,
-            Branching::Inputs => false,
-            Branching::Phases => true,
-        };
-        let phase = if by_phase {
-            self.worst_phase(&node)
-        } else {
-            None
-        };
-        match phase {
-            Some(neuron) => Step::Split(Split::Phase { neuron }, split_phase(node, neuron)),
-            None => match split_input(node, &self.scores) {
-                Some((split, children)) => Step::Split(split, children),
-                None => Step::Stuck,
-            },
+        let phase = self.by_phase.then(|| self.worst_phase(&node)).flatten();
+        if let Some(neuron) = phase {
+            let children = split_phase(node, neuron);
+            return Ok(Step::Split(Split::Phase { neuron }, children));
         }
+        let InputBox { lower, upper } = node.region.clone();
+        if let Some((split, children)) = split_input(node, &self.scores) {
+            return Ok(Step::Split(split, children));
+        }
+        // Nothing can be cut any further: the corners are all that there is to try.
+        candidates.extend([lower, upper]);
+        let mut corners = candidates.iter();
+        let witness =
+            corners.find_map(|point| Witness::near(problem.network, problem.query, point));
+        Ok(witness.map_or(Step::Stuck, Step::Witness))
+    }
+
+    /// Whether the checker will confirm a claim, or that the region is empty. It is not asked about
+    /// networks so large that asking takes long.
+    fn is_confirmed(&self, node: &Node, claim: Option<&Refutation>) -> bool {
+        let Problem { network, query, .. } = self.problem;
+        confirms(network, query, &node.region, &node.phases, claim).unwrap_or(true)
     }
 
     /// The unstable ReLU whose relaxation costs the most.

@@ -1,6 +1,11 @@
 //! The verifier against oracles that share nothing with it: enumeration of all activation
 //! patterns by linear programmes, and dense sampling.
 
+mod cases;
+mod corners;
+mod differential;
+mod oracle;
+
 use super::propagation::{Prepared, Workspace};
 use super::relaxation::Lines;
 use super::*;
@@ -110,7 +115,7 @@ fn least_violation(network: &Network, region: &InputBox, atoms: &[Halfspace]) ->
             for (j, x) in x.iter().enumerate() {
                 excess.add(
                     *x,
-                    atom.coefficients
+                    atom.coefficients()
                         .iter()
                         .zip(&forms)
                         .map(|(a, f)| a * f.0[j])
@@ -119,12 +124,12 @@ fn least_violation(network: &Network, region: &InputBox, atoms: &[Halfspace]) ->
             }
             excess.add(t, -1.0);
             let constant: f64 = atom
-                .coefficients
+                .coefficients()
                 .iter()
                 .zip(&forms)
                 .map(|(a, f)| a * f.1)
                 .sum();
-            lp.add_constraint(excess, ComparisonOp::Le, atom.bound - constant);
+            lp.add_constraint(excess, ComparisonOp::Le, atom.bound() - constant);
         }
         if let Ok(SolveOutcome::Solution(solution)) = lp.solve() {
             least = least.min(solution.objective());
@@ -136,16 +141,10 @@ fn least_violation(network: &Network, region: &InputBox, atoms: &[Halfspace]) ->
 fn shifted(region: &InputBox, atoms: &[Halfspace], by: f64) -> Property {
     let atoms: Vec<_> = atoms
         .iter()
-        .map(|a| Halfspace {
-            bound: a.bound + by,
-            ..a.clone()
-        })
+        .map(|a| Halfspace::new(a.coefficients().to_vec(), a.bound() + by))
         .collect();
-    let outputs = atoms[0].coefficients.len();
-    let query = Query {
-        region: region.clone(),
-        unsafe_set: vec![atoms],
-    };
+    let outputs = atoms[0].coefficients().len();
+    let query = Query::new(region.clone(), vec![atoms]);
     Property {
         inputs: region.lower.len(),
         outputs,
@@ -164,9 +163,8 @@ fn agrees_with_the_enumeration_of_all_patterns() {
         };
         let network = network(&mut random, widths, Activation::Identity);
         let region = region(&mut random, widths[0]);
-        let atom = |random: &mut Pcg64| Halfspace {
-            coefficients: vec![number(random), number(random)],
-            bound: number(random),
+        let atom = |random: &mut Pcg64| {
+            Halfspace::new(vec![number(random), number(random)], number(random))
         };
         let atoms: Vec<_> = (0..1 + round % 3).map(|_| atom(&mut random)).collect();
         let least = least_violation(&network, &region, &atoms);
@@ -214,7 +212,7 @@ fn worst_escape(spoil: impl Fn(&mut Network), enclose: Option<fn(f64, f64) -> Li
             prepared.enclose = enclose.unwrap_or(prepared.enclose);
             let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); prepared.neurons];
             if Workspace::default()
-                .bound(&prepared, &region, &[], &mut bounds, &[], &[])
+                .bound(&prepared, &region, &[], &mut bounds, &[], &[], None)
                 .is_err()
             {
                 return f64::INFINITY;
@@ -287,10 +285,7 @@ fn the_same_seed_gives_the_same_answer_on_any_number_of_threads() {
     let mut random = Pcg64::seed_from_u64(3);
     let network = network(&mut random, &[4, 12, 12, 2], Activation::Identity);
     let region = region(&mut random, 4);
-    let atoms = [Halfspace {
-        coefficients: vec![1.0, -1.0],
-        bound: -2.0,
-    }];
+    let atoms = [Halfspace::new(vec![1.0, -1.0], -2.0)];
     for by in [-1.0, 0.0, 1.0, 2.0] {
         let on = |threads| {
             let pool = rayon::ThreadPoolBuilder::new()
@@ -312,10 +307,7 @@ fn the_checker_refuses_what_is_not_a_proof() {
     let mut random = Pcg64::seed_from_u64(4);
     let network = network(&mut random, &[3, 8, 8, 2], Activation::Identity);
     let region = region(&mut random, 3);
-    let atoms = [Halfspace {
-        coefficients: vec![1.0, 0.5],
-        bound: 0.0,
-    }];
+    let atoms = [Halfspace::new(vec![1.0, 0.5], 0.0)];
     // Bisection for a property that only just holds, so that the proof has many regions.
     let (mut holds, mut fails) = (-100.0, 100.0);
     let options = SearchOptions {

@@ -2,7 +2,7 @@
 //! `CEDE_CONFORMANCE_DIR` or `../shared/conformance`, these tests say so and pass.
 
 use cede_nnv::{Answer, Branching, SearchOptions, verify};
-use cede_nnv_check::{Certificate, Network, Property, onnx, vnnlib};
+use cede_nnv_check::{Certificate, Network, Property, Source, onnx, vnnlib};
 use cede_tests::conformance;
 use proptest::prelude::*;
 use std::path::Path;
@@ -43,22 +43,19 @@ fn agree(instances: &[Instance], checked: bool) {
         let report = verify(&instance.network, &instance.property, options).expect("they fit");
         let word = match &report.answer {
             Answer::Unsat => "unsat",
-            Answer::Sat(x) => {
-                let y = instance.network.run(x);
-                assert!(
-                    instance.property.certainly_violated(x, &y),
-                    "{}",
-                    instance.name
-                );
+            Answer::Sat(witness) => {
+                let violated = |point| instance.property.is_violated(&instance.network, point);
+                assert!(violated(witness.point()), "{}", instance.name);
                 "sat"
             }
             _ => "unsolved",
         };
         assert_eq!(word, instance.verdict, "{}", instance.name);
         if checked && word == "unsat" {
-            let certificate = Certificate::new(Path::new("n"), Path::new("p"), report.proofs);
+            let nothing = Source::new(Path::new("n"), &[]);
+            let certificate = Certificate::new("p", nothing.clone(), nothing, report.proofs);
             let read = Certificate::from_text(&certificate.to_text()).expect("its own text");
-            let regions = read.check(&instance.network, &instance.property);
+            let regions = read.check_proofs(&instance.network, &instance.property);
             assert!(regions.is_ok(), "{}: {regions:?}", instance.name);
         }
     }

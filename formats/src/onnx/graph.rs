@@ -1,17 +1,20 @@
 //! The one reader of ONNX graphs: what a graph computes, as a list of a few typed operations.
 //!
-//! Understood: Gemm, MatMul, Add, Sub, Mul and Div with constants, Relu, Tanh, Clip, Flatten,
-//! Reshape, Transpose, Squeeze, Unsqueeze, Identity, Dropout, Constant, Concat; `f32` and `f64`
-//! tensors, raw or typed. A symbolic dimension (a batch) counts as 1. Shapes are checked, constants
+//! Understood: Gemm, MatMul and Conv with constants; Add and Sub; Mul and Div with constants; Relu,
+//! LeakyRelu, Sigmoid, Tanh, Clip; MaxPool, AveragePool, GlobalAveragePool, BatchNormalization;
+//! Flatten, Reshape, Transpose, Squeeze, Unsqueeze, Concat, Slice, Split, Gather, Identity, Dropout,
+//! Constant; `f32` and `f64` tensors, raw or typed. A symbolic dimension (a batch) counts as 1. Shapes are checked, constants
 //! are resolved and moved, and nothing is computed: every number of the file keeps its exact value.
 
 mod arguments;
 mod elementwise;
 mod linear;
 mod moves;
+mod parts;
+mod windows;
 
 use super::proto;
-use super::shape::{MOST_ELEMENTS, Shape};
+use super::shape::{MOST_ELEMENTS, MOST_WEIGHTS, Shape};
 use super::tensor::Values;
 use arguments::Arguments;
 pub use linear::Linear;
@@ -51,7 +54,7 @@ pub struct Step {
     pub node: String,
     /// The node's operator.
     pub operator: String,
-    /// The values that it takes, by number: one, but for [`Operation::Join`].
+    /// The values that it takes, by number: one, but for [`Operation::Join`] and [`Operation::Sum`].
     pub from: Vec<usize>,
     /// What is computed.
     pub operation: Operation,
@@ -92,6 +95,25 @@ pub enum Operation {
     Divide(Vec<f64>),
     /// A matrix product with a constant.
     Linear(Linear),
+    /// Two values of one size: the first plus a sign times the second.
+    Sum {
+        /// 1 or −1.
+        sign: f64,
+    },
+    /// x divided by a number greater than 0 for each element, which is within 4 units in the last
+    /// place of the given one.
+    DivideNearly(Vec<f64>),
+    /// A sum of elements, each times a number, for each element of the result.
+    Map(Vec<Vec<(usize, f64)>>),
+    /// The largest of some elements, for each element of the result.
+    Largest(Vec<Vec<usize>>),
+    /// max(0, x) + slope·min(0, x).
+    LeakyRelu {
+        /// The slope below 0.
+        slope: f64,
+    },
+    /// 1 / (1 + e⁻ˣ).
+    Sigmoid,
     /// max(0, x).
     Relu,
     /// tanh x.
@@ -137,9 +159,11 @@ pub enum GraphError {
 
 /// The most elements that all nodes of a graph give together.
 const MOST_IN_ALL: usize = 1 << 25;
+/// The most elements that all constants of its nodes have together.
+const MOST_CONSTANT: usize = 1 << 27;
 
 /// Reads a graph. Never panics on any bytes; memory is bounded by a small multiple of the file's
-/// size, plus 2²⁵ elements.
+/// size, plus 2²⁵ elements and 2²⁷ weights.
 ///
 /// # Errors
 /// If the bytes are not an ONNX model, or the graph holds more than the operators of the module's
@@ -167,6 +191,7 @@ pub fn read(bytes: &[u8]) -> Result<Graph, GraphError> {
     let mut recorder = Recorder {
         next: inputs.len(),
         room: MOST_IN_ALL,
+        constants: MOST_CONSTANT,
         steps: Vec::new(),
     };
     for node in &graph.node {
@@ -175,14 +200,24 @@ pub fn read(bytes: &[u8]) -> Result<Graph, GraphError> {
             operator: node.op_type.clone(),
             what,
         };
-        let output = node
-            .output
-            .first()
-            .ok_or_else(|| fault("gives nothing".to_owned()))?;
+        if node.output.is_empty() {
+            return Err(fault("gives nothing".to_owned()));
+        }
         let arguments = Arguments::new(node, &values);
-        let value = apply(&arguments, &mut recorder).map_err(fault)?;
-        recorder.charge(value.shape().size()).map_err(fault)?;
-        values.insert(output, value);
+        let given = if node.op_type == "Split" {
+            parts::split(&arguments, &mut recorder)
+        } else {
+            apply(&arguments, &mut recorder).map(|value| vec![value])
+        };
+        for (output, value) in node.output.iter().zip(given.map_err(fault)?) {
+            let size = value.shape().size();
+            let charged = match value {
+                Value::Constant(_) => recorder.charge_constant(size),
+                Value::Variable(_) => recorder.charge(size),
+            };
+            charged.map_err(fault)?;
+            values.insert(output, value);
+        }
     }
     let output = output(&graph, &values)?;
     let input = |(name, shape): (&str, Shape)| Input {
@@ -230,8 +265,10 @@ struct Constant {
 
 impl Constant {
     fn read(tensor: &proto::Tensor) -> Result<Self, String> {
-        let shape =
-            Shape::stated(&tensor.dims).ok_or_else(|| format!("shape {:?}", tensor.dims))?;
+        let shape = Shape::stated(&tensor.dims).ok_or_else(|| {
+            let dims = &tensor.dims;
+            format!("shape {dims:?} is negative or has more than {MOST_WEIGHTS} (2²⁶) elements")
+        })?;
         let values = tensor.values().map_err(|e| e.to_string())?;
         Ok(Self { shape, values })
     }
@@ -243,13 +280,27 @@ struct Recorder {
     next: usize,
     /// Elements that the graph may still give.
     room: usize,
+    /// Elements that its nodes' constants may still have.
+    constants: usize,
     steps: Vec<Step>,
 }
 
 impl Recorder {
     fn charge(&mut self, elements: usize) -> Result<(), String> {
         let room = self.room.checked_sub(elements);
-        self.room = room.ok_or("makes the graph too large")?;
+        self.room = room.ok_or_else(|| {
+            format!(
+                "makes the graph too large: its nodes give more than {MOST_IN_ALL} (2²⁵) elements"
+            )
+        })?;
+        Ok(())
+    }
+
+    fn charge_constant(&mut self, elements: usize) -> Result<(), String> {
+        let room = self.constants.checked_sub(elements);
+        self.constants = room.ok_or_else(|| {
+            format!("makes the graph too large: its constants have more than {MOST_CONSTANT} (2²⁷) elements")
+        })?;
         Ok(())
     }
 
@@ -261,7 +312,13 @@ impl Recorder {
         operation: Operation,
         shape: Shape,
     ) -> Result<Variable, String> {
-        self.charge(shape.size())?;
+        let size = shape.size();
+        if size > MOST_ELEMENTS {
+            return Err(format!(
+                "gives {size} elements; at most {MOST_ELEMENTS} (2²²) are supported"
+            ));
+        }
+        self.charge(size)?;
         self.steps.push(Step {
             node: arguments.node.label(),
             operator: arguments.node.op_type.clone(),
@@ -287,6 +344,15 @@ fn apply(arguments: &Arguments<'_>, recorder: &mut Recorder) -> Result<Value, St
         "Identity" | "Dropout" => arguments.value(0).cloned(),
         "Relu" => elementwise::activation(arguments, recorder, Operation::Relu),
         "Tanh" => elementwise::activation(arguments, recorder, Operation::Tanh),
+        "Sigmoid" => elementwise::activation(arguments, recorder, Operation::Sigmoid),
+        "LeakyRelu" => {
+            let slope = arguments.attribute("alpha").map_or(0.01_f32, |a| a.f);
+            if !slope.is_finite() {
+                return Err("alpha is not finite".to_owned());
+            }
+            let slope = f64::from(slope);
+            elementwise::activation(arguments, recorder, Operation::LeakyRelu { slope })
+        }
         "Clip" => elementwise::clip(arguments, recorder),
         "Add" => elementwise::sum(arguments, recorder, 1.0),
         "Sub" => elementwise::sum(arguments, recorder, -1.0),
@@ -298,14 +364,22 @@ fn apply(arguments: &Arguments<'_>, recorder: &mut Recorder) -> Result<Value, St
         "Unsqueeze" => moves::unsqueeze(arguments),
         "Transpose" => moves::transpose(arguments, recorder),
         "Concat" => moves::concat(arguments, recorder),
+        "Slice" => parts::slice(arguments, recorder),
+        "Gather" => parts::gather(arguments, recorder),
+        "Conv" => windows::convolution(arguments, recorder),
+        "MaxPool" => windows::max_pool(arguments, recorder),
+        "AveragePool" => windows::average_pool(arguments, recorder, false),
+        "GlobalAveragePool" => windows::average_pool(arguments, recorder, true),
+        "BatchNormalization" => windows::normalisation(arguments, recorder),
         "MatMul" => linear::matmul(arguments, recorder),
         "Gemm" => linear::gemm(arguments, recorder),
         _ => Err(format!("is not supported; supported are {OPERATORS}")),
     }
 }
 
-const OPERATORS: &str = "Gemm, MatMul, Add, Sub, Mul, Div, Relu, Tanh, Clip, Flatten, Reshape, \
-    Transpose, Squeeze, Unsqueeze, Concat, Identity, Dropout and Constant";
+const OPERATORS: &str = "Gemm, MatMul, Conv, Add, Sub, Mul, Div, Relu, LeakyRelu, Sigmoid, Tanh, Clip, \
+    MaxPool, AveragePool, GlobalAveragePool, BatchNormalization, Flatten, Reshape, Transpose, Squeeze, \
+    Unsqueeze, Concat, Slice, Split, Gather, Identity, Dropout and Constant";
 
 /// The graph's inputs that are not initialisers, with their shapes.
 fn inputs<'a>(
@@ -320,7 +394,9 @@ fn inputs<'a>(
     match inputs.iter().map(|(_, shape)| shape.size()).sum() {
         0 => Err(GraphError::Graph("the graph has no input".to_owned())),
         1..=MOST_ELEMENTS => Ok(inputs),
-        many => Err(GraphError::Graph(format!("{many} inputs are too many"))),
+        many => Err(GraphError::Graph(format!(
+            "{many} inputs; at most {MOST_ELEMENTS} (2²²) are supported"
+        ))),
     }
 }
 

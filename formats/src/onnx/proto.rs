@@ -124,6 +124,9 @@ pub struct Attribute {
     /// A whole number.
     #[prost(int64, tag = "3")]
     pub i: i64,
+    /// A text.
+    #[prost(bytes = "vec", tag = "4")]
+    pub s: Vec<u8>,
     /// A tensor.
     #[prost(message, optional, tag = "5")]
     pub t: Option<Tensor>,
@@ -133,7 +136,7 @@ pub struct Attribute {
     /// Whole numbers.
     #[prost(int64, repeated, tag = "8")]
     pub ints: Vec<i64>,
-    /// Which of the fields holds: 1 `f`, 2 `i`, 4 `t`, 6 `floats`, 7 `ints`. Runtimes insist on it.
+    /// Which of the fields holds: 1 `f`, 2 `i`, 3 `s`, 4 `t`, 6 `floats`, 7 `ints`. Runtimes insist on it.
     #[prost(int32, tag = "20")]
     pub r#type: i32,
 }

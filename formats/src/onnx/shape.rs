@@ -1,9 +1,11 @@
 //! Shapes of tensors.
 
-/// The most elements of a tensor.
+/// The most elements of a tensor that depends on the inputs: 2²².
 pub const MOST_ELEMENTS: usize = 1 << 22;
+/// The most weights of a linear map, and elements of a constant: 2²⁶.
+pub const MOST_WEIGHTS: usize = 1 << 26;
 
-/// The shape of a tensor, outermost dimension first; its size is at most [`MOST_ELEMENTS`].
+/// The shape of a tensor, outermost dimension first; its size is at most [`MOST_WEIGHTS`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Shape(Vec<usize>);
 
@@ -14,7 +16,7 @@ impl Shape {
         let size = dims
             .iter()
             .try_fold(1_usize, |size, &d| size.checked_mul(d))?;
-        (size <= MOST_ELEMENTS).then_some(Self(dims))
+        (size <= MOST_WEIGHTS).then_some(Self(dims))
     }
 
     /// A shape as a file states it, unless a dimension is negative or the size too large.
@@ -35,7 +37,8 @@ impl Shape {
         self.0.iter().product()
     }
 
-    /// The shape of `self` broadcast against `other` (numpy's rule), if they fit.
+    /// The shape of `self` broadcast against `other` (numpy's rule), if they fit and its size is at
+    /// most [`MOST_ELEMENTS`].
     pub(super) fn broadcast(&self, other: &Self) -> Option<Self> {
         let rank = self.0.len().max(other.0.len());
         let dim = |shape: &Self, axis: usize| {
@@ -47,7 +50,8 @@ impl Shape {
             (1, n) | (n, 1) => Some(n),
             _ => None,
         });
-        Self::new(dims.collect::<Option<_>>()?)
+        let shape = Self::new(dims.collect::<Option<_>>()?)?;
+        (shape.size() <= MOST_ELEMENTS).then_some(shape)
     }
 
     /// Which element of `self` stands at a flat index of `whole`, a broadcast of `self`.

@@ -3,7 +3,7 @@
 use super::OnnxError;
 use crate::model::{Activation, Layer, Matrix, Network};
 use crate::rounding::{exact_product, exact_sum};
-use cede_formats::onnx::MOST_ELEMENTS;
+use cede_formats::onnx::MOST_WEIGHTS;
 use cede_formats::onnx::graph::GraphError;
 use std::ops::Range;
 
@@ -47,21 +47,29 @@ impl Variable {
         self.rows.len()
     }
 
+    /// Its terms' number.
     fn entries(&self) -> usize {
         self.rows.iter().map(|row| row.terms.len()).sum()
     }
 }
 
+/// A layer as it grows: what its outputs are before the activation.
+struct Draft {
+    rows: Vec<Row>,
+    activation: Activation,
+    uncertainty: f64,
+}
+
 /// The layers so far.
 pub(super) struct Builder {
     inputs: usize,
-    layers: Vec<Layer>,
+    layers: Vec<Draft>,
     /// Entries of maps that the graph may still give.
     room: usize,
 }
 
 /// The most entries that all maps of a graph have together.
-const MOST_IN_ALL: usize = 1 << 26;
+const MOST_IN_ALL: usize = 1 << 28;
 
 impl Builder {
     pub(super) fn new(inputs: usize) -> Self {
@@ -82,22 +90,16 @@ impl Builder {
         self.bounded(Variable { rows, ..*value })
     }
 
-    /// Elements taken from several values of the same depth: element i is element `pick[i].1` of
-    /// `parts[pick[i].0]`.
+    /// Elements taken from several values: element i is element `pick[i].1` of `parts[pick[i].0]`.
     pub(super) fn joined(
         &mut self,
         parts: &[&Variable],
         pick: &[(usize, usize)],
     ) -> Result<Variable, String> {
+        let parts = self.levelled(parts)?;
         let Variable {
             base, uncertainty, ..
-        } = *parts[0];
-        let differs = |part: &&Variable| part.base != base || part.uncertainty != uncertainty;
-        if parts.iter().any(differs) {
-            return Err(
-                "joins values of different depths; only chains of layers are supported".to_owned(),
-            );
-        }
+        } = parts[0];
         let rows = pick.iter().map(|&(part, i)| parts[part].rows[i].clone());
         self.bounded(Variable {
             base,
@@ -147,13 +149,99 @@ impl Builder {
         if exact {
             return self.map(value, divisors.len(), reciprocal);
         }
+        self.divide_nearly(value, divisors)
+    }
+
+    /// Every element divided by a positive constant that is known to 4 units in the last place.
+    pub(super) fn divide_nearly(
+        &mut self,
+        value: &Variable,
+        divisors: &[f64],
+    ) -> Result<Variable, String> {
+        let reciprocal = |i: usize| (vec![(i, 1.0 / divisors[i])], 0.0);
         let value = self.activate(value, Activation::Identity)?;
         let divided = self.map(&value, divisors.len(), reciprocal)?;
+        // The divisor's error, and that of the reciprocal, which may not be a normal number.
         let uncertain = Variable {
-            uncertainty: f64::EPSILON,
+            uncertainty: 8.0 * f64::EPSILON,
             ..divided
         };
         self.activate(&uncertain, Activation::Identity)
+    }
+
+    /// The sum of two values of one size, the second with a sign.
+    pub(super) fn sum(
+        &mut self,
+        first: &Variable,
+        second: &Variable,
+        sign: f64,
+    ) -> Result<Variable, String> {
+        let both = self.both(first, second)?;
+        let size = first.size();
+        self.map(&both, size, |i| (vec![(i, 1.0), (size + i, sign)], 0.0))
+    }
+
+    /// The elements of one value, then those of another.
+    pub(super) fn both(&mut self, first: &Variable, second: &Variable) -> Result<Variable, String> {
+        let firsts = (0..first.size()).map(|i| (0, i));
+        let all: Vec<_> = firsts.chain((0..second.size()).map(|i| (1, i))).collect();
+        self.joined(&[first, second], &all)
+    }
+
+    /// The values, all as maps of the outputs of one layer whose coefficients are exact.
+    fn levelled(&mut self, values: &[&Variable]) -> Result<Vec<Variable>, String> {
+        let mut level = values.iter().map(|v| v.base).max().unwrap_or(0);
+        if values.iter().any(|v| v.uncertainty != 0.0) {
+            // Uncertain coefficients end a layer, and there may not be one yet.
+            level += 1;
+        }
+        if level > self.layers.len() {
+            self.layers.push(Draft {
+                rows: Vec::new(),
+                activation: Activation::Identity,
+                uncertainty: 0.0,
+            });
+        }
+        values.iter().map(|v| self.lifted(v, level)).collect()
+    }
+
+    /// A value as a map of the outputs of a later layer: what lies between passes it on, a ReLU as
+    /// x = relu(x) − relu(−x).
+    fn lifted(&mut self, value: &Variable, level: usize) -> Result<Variable, String> {
+        let mut value = value.clone();
+        while value.base < level {
+            let layer = &mut self.layers[value.base];
+            layer.uncertainty = layer.uncertainty.max(value.uncertainty);
+            let first = layer.rows.len();
+            let signs: &[f64] = match layer.activation {
+                Activation::Identity => &[1.0],
+                Activation::Relu => &[1.0, -1.0],
+                Activation::Tanh => {
+                    return Err("of a value from before a Tanh is not supported".to_owned());
+                }
+            };
+            let mut rows = Vec::with_capacity(value.rows.len());
+            for (i, row) in value.rows.into_iter().enumerate() {
+                let place = first + signs.len() * i;
+                for sign in signs {
+                    layer.rows.push(Row {
+                        terms: row.terms.iter().map(|&(j, c)| (j, sign * c)).collect(),
+                        bias: sign * row.bias,
+                    });
+                }
+                let places = signs.iter().enumerate();
+                rows.push(Row {
+                    terms: places.map(|(k, &sign)| (place + k, sign)).collect(),
+                    bias: 0.0,
+                });
+            }
+            value = self.bounded(Variable {
+                base: value.base + 1,
+                rows,
+                uncertainty: 0.0,
+            })?;
+        }
+        Ok(value)
     }
 
     /// Ends a layer: the value, then the activation.
@@ -162,30 +250,12 @@ impl Builder {
         value: &Variable,
         activation: Activation,
     ) -> Result<Variable, String> {
-        if value.base != self.layers.len() {
-            return Err(
-                "takes a value that a later layer has left behind; only chains are supported"
-                    .to_owned(),
-            );
-        }
-        let width = self.layers.last().map_or(self.inputs, Layer::outputs);
+        let value = &self.lifted(value, self.layers.len())?;
+        let width = self.layers.last().map_or(self.inputs, |l| l.rows.len());
         let outputs = value.rows.len();
-        if outputs
-            .checked_mul(width)
-            .is_none_or(|entries| entries > MOST_ELEMENTS)
-        {
-            return Err(format!("a layer of {width} by {outputs} is too large"));
-        }
-        let mut weights = Matrix::zeros(outputs, width);
-        for (i, row) in value.rows.iter().enumerate() {
-            for &(j, c) in &row.terms {
-                weights.row_mut(i)[j] += c;
-            }
-        }
-        let bias = value.rows.iter().map(|row| row.bias).collect();
-        self.layers.push(Layer {
-            weights,
-            bias,
+        fits(width, outputs)?;
+        self.layers.push(Draft {
+            rows: value.rows.clone(),
             activation,
             uncertainty: value.uncertainty,
         });
@@ -202,9 +272,11 @@ impl Builder {
         self.room = self
             .room
             .checked_sub(entries + value.size())
-            .ok_or("makes the graph too large")?;
-        if entries > MOST_ELEMENTS {
-            return Err("gives too large a map".to_owned());
+            .ok_or_else(|| format!("makes the network too large: its maps have more than {MOST_IN_ALL} (2²⁸) entries"))?;
+        if entries > MOST_WEIGHTS {
+            return Err(format!(
+                "gives a map of {entries} weights; at most {MOST_WEIGHTS} (2²⁶) are supported"
+            ));
         }
         Ok(value)
     }
@@ -216,13 +288,50 @@ impl Builder {
             && self
                 .layers
                 .last()
-                .is_some_and(|last| last.outputs() == value.rows.len())
+                .is_some_and(|last| last.rows.len() == value.rows.len())
             && value.rows.iter().enumerate().all(plain);
         if !is_last_layer {
             self.activate(value, Activation::Identity)
                 .map_err(GraphError::Graph)?;
         }
-        Ok(Network::new(self.inputs, self.layers)?)
+        let mut width = self.inputs;
+        let mut layers = Vec::with_capacity(self.layers.len());
+        for draft in self.layers {
+            let layer = draft.layer(width).map_err(GraphError::Graph)?;
+            width = layer.outputs();
+            layers.push(layer);
+        }
+        Ok(Network::new(self.inputs, layers)?)
+    }
+}
+
+impl Draft {
+    /// The layer, for so many inputs.
+    fn layer(self, width: usize) -> Result<Layer, String> {
+        let outputs = self.rows.len();
+        fits(width, outputs)?;
+        let mut weights = Matrix::zeros(outputs, width);
+        for (i, row) in self.rows.iter().enumerate() {
+            for &(j, c) in &row.terms {
+                weights.row_mut(i)[j] += c;
+            }
+        }
+        Ok(Layer {
+            weights,
+            bias: self.rows.iter().map(|row| row.bias).collect(),
+            activation: self.activation,
+            uncertainty: self.uncertainty,
+        })
+    }
+}
+
+/// Refuses a layer of too many weights.
+fn fits(width: usize, outputs: usize) -> Result<(), String> {
+    match outputs.checked_mul(width) {
+        Some(0..=MOST_WEIGHTS) => Ok(()),
+        _ => Err(format!(
+            "gives a layer of {width} by {outputs} weights; at most {MOST_WEIGHTS} (2²⁶) are supported"
+        )),
     }
 }
 

@@ -11,10 +11,7 @@ const SMALL: &str = "
 ";
 
 fn half(coefficients: [f64; 2], bound: f64) -> Halfspace {
-    Halfspace {
-        coefficients: coefficients.to_vec(),
-        bound,
-    }
+    Halfspace::new(coefficients.to_vec(), bound)
 }
 
 #[test]
@@ -64,6 +61,52 @@ fn errors_say_where_and_what() {
             .contains("not linear")
     );
     assert!(at(&"(".repeat(1000)).what.contains("nested"));
+}
+
+#[test]
+fn constants_are_computed_exactly_or_refused() {
+    let text = |comparison: &str| {
+        format!(
+            "(declare-const X_0 Real)(declare-const Y_0 Real)(assert (and (<= 0 X_0 1) {comparison}))"
+        )
+    };
+    let atom = |comparison: &str| {
+        let property = read(&text(comparison)).expect("well formed");
+        property.queries[0].unsafe_set[0][0].clone()
+    };
+    let one = |coefficient, bound| Halfspace::new(vec![coefficient], bound);
+    assert_eq!(atom("(<= (+ Y_0 1e17 -1 -1e17) 0)"), one(1.0, 1.0));
+    assert_eq!(atom("(< (* 2 3 Y_0) (/ 3 2))"), one(6.0, 1.5).strict());
+    assert_eq!(atom("(>= (- Y_0) (- 1 2 3))"), one(1.0, 4.0));
+    // 0.1·y ≤ 0.3 is y ≤ 3, times a power of two.
+    let tenth = atom("(<= (* 0.1 Y_0) 0.3)");
+    assert_eq!(tenth.bound() / tenth.coefficients()[0], 3.0);
+    assert!(!tenth.is_rounded());
+    assert!(atom("(<= (* 1e-400 Y_0) 1)").is_rounded());
+    for hostile in [
+        "(<= Y_0 1e9999)".to_owned(),
+        format!("(<= Y_0 (* {}))", "1e2000 ".repeat(100)),
+        format!("(<= Y_0 {})", "1".repeat(10_000)),
+    ] {
+        assert!(read(&text(&hostile)).is_err());
+    }
+}
+
+#[test]
+fn limits_that_are_no_floats_or_strict_are_kept() {
+    let text = "(declare-const X_0 Real)(declare-const X_1 Real)(declare-const Y_0 Real)
+        (assert (and (>= X_0 0.1)(< X_0 1)(<= X_1 2 )(>= X_1 -2)(<= Y_0 0)))";
+    let query = &read(text).expect("well formed").queries[0];
+    let sides: Vec<_> = query
+        .limits
+        .iter()
+        .map(|l| (l.input, l.upper, l.strict))
+        .collect();
+    assert_eq!(sides, [(0, false, false), (0, true, true)]);
+    assert!(
+        query.region.lower[0] < 0.1,
+        "the float 0.1 is above the decimal"
+    );
 }
 
 proptest! {

@@ -3,6 +3,7 @@
 
 use cede_nnv_check::InputBox;
 use microlp::{ComparisonOp, LinearExpr, OptimizationDirection, Problem, SolveOutcome, Variable};
+use std::time::Duration;
 
 /// Multipliers beyond this are of no use in floating point.
 const LARGEST: f64 = 1e7;
@@ -14,6 +15,7 @@ pub(super) fn best_weights(
     forms: &[Vec<f64>],
     atoms: usize,
     region: &InputBox,
+    time: Duration,
 ) -> Option<Vec<f64>> {
     let mut lp = Problem::new(OptimizationDirection::Maximize);
     let weights: Vec<Variable> = forms
@@ -39,7 +41,7 @@ pub(super) fn best_weights(
             0.0,
         );
     }
-    let solution = solved(&lp)?;
+    let solution = solved(lp, time)?;
     Some(weights.iter().map(|&w| solution[w].max(0.0)).collect())
 }
 
@@ -48,6 +50,7 @@ pub(super) fn least_excess(
     forms: &[Vec<f64>],
     atoms: usize,
     region: &InputBox,
+    time: Duration,
 ) -> Option<Vec<f64>> {
     let mut lp = Problem::new(OptimizationDirection::Minimize);
     let largest = lp.add_var(1.0, (f64::NEG_INFINITY, f64::INFINITY));
@@ -62,7 +65,7 @@ pub(super) fn least_excess(
             -form[0],
         );
     }
-    let solution = solved(&lp)?;
+    let solution = solved(lp, time)?;
     let clamped = inputs.iter().zip(&region.lower).zip(&region.upper);
     Some(
         clamped
@@ -77,7 +80,8 @@ fn sum(terms: impl Iterator<Item = (Variable, f64)>) -> LinearExpr {
     sum
 }
 
-fn solved(lp: &Problem) -> Option<microlp::Solution> {
+fn solved(mut lp: Problem, time: Duration) -> Option<microlp::Solution> {
+    lp.set_time_limit(time);
     match lp.solve() {
         Ok(SolveOutcome::Solution(solution)) => Some(solution),
         _ => None,

@@ -26,16 +26,17 @@ impl Node {
     }
 }
 
-/// Halves the box across the input with the highest score (the widest one, if nothing is blamed).
+/// Halves the box across the input with the highest score (the widest one, if nothing is blamed, or without scores).
 /// The children are in the order in which they are searched last to first.
 pub(super) fn split_input(node: Node, scores: &[f64]) -> Option<(Split, [Node; 2])> {
     let InputBox { lower, upper } = &node.region;
-    let middle = |i: usize| 0.5 * (lower[i] + upper[i]);
+    let middle = |i: usize| f64::midpoint(lower[i], upper[i]);
     let divisible = |&i: &usize| lower[i] < middle(i) && middle(i) < upper[i];
     let better = |&a: &usize, &b: &usize| {
         let width = |i: usize| upper[i] - lower[i];
-        scores[a]
-            .total_cmp(&scores[b])
+        let score = |i: usize| scores.get(i).copied().unwrap_or(0.0);
+        score(a)
+            .total_cmp(&score(b))
             .then(width(a).total_cmp(&width(b)))
             .then(b.cmp(&a))
     };

@@ -294,10 +294,7 @@ impl<'a> Task<'a> {
             let holds = |slopes| slope_holds(self.property.claim, slopes);
             return slopes_hold(self.subject, &self.setting, region, holds, proof);
         };
-        let query = Query {
-            region,
-            unsafe_set: vec![vec![atom.clone()]],
-        };
+        let query = Query::new(region, vec![vec![atom.clone()]]);
         let front = |region: &InputBox| self.subject.front(region, &self.setting);
         check::check_composed(&self.subject.network, Some(&front), &query, proof)
     }
@@ -331,20 +328,16 @@ pub(super) fn region(property: &StateProperty) -> InputBox {
 fn unsafe_side(claim: Claim, margin: f64) -> Option<Halfspace> {
     // Beyond ± 3 nothing is left to prove, and atanh is infinite: an unreachable mean stands in.
     let mean = |a: f64| (a.clamp(-MOST, MOST) / MOST).atanh().clamp(-1e6, 1e6);
+    // A margin that is not finite is one that no mean reaches.
+    let margin = margin.min(f64::MAX / 4.0);
     match claim {
         Claim::AccelerationAtMost(most) => {
             let threshold = mean(most - MOST * TANH * f64::from(u8::from(most < MOST)));
-            Some(Halfspace {
-                coefficients: vec![-1.0],
-                bound: -(threshold - margin) + 1e-9,
-            })
+            Some(Halfspace::new(vec![-1.0], margin - threshold + 1e-9))
         }
         Claim::AccelerationAtLeast(least) => {
             let threshold = mean(least + MOST * TANH * f64::from(u8::from(least > -MOST)));
-            Some(Halfspace {
-                coefficients: vec![1.0],
-                bound: threshold + margin + 1e-9,
-            })
+            Some(Halfspace::new(vec![1.0], threshold + margin + 1e-9))
         }
         Claim::RisesAtLeast { .. } | Claim::ChangesAtMost { .. } => None,
     }

@@ -1,6 +1,6 @@
 //! `cede verify check`.
 
-use super::network::read;
+use super::network::bytes;
 use crate::failure::Failure;
 use cede_nnv_check::Certificate;
 use clap::Args;
@@ -10,8 +10,9 @@ use std::path::PathBuf;
 
 /// The text below the options in `cede help verify check`.
 const HELP: &str = "\
-Exit code 0 if the certificate is a proof, 1 if it is not. The certificate names the network and the property
-relative to the current folder; --onnx and --vnnlib replace these paths.";
+Exit code 0 if the certificate is a proof, 1 if it is not. The certificate names the network and the property by
+path, relative to the current folder, and by hash. --onnx and --vnnlib replace the paths; files of other content are
+refused. What has been proved of what is printed.";
 
 /// Options of `cede verify check`.
 #[derive(Args)]
@@ -36,14 +37,18 @@ impl Check {
         let certificate = certificate
             .wrap_err_with(|| format!("cannot use {}", self.certificate.display()))
             .map_err(Failure::Input)?;
-        let onnx = self.onnx.unwrap_or_else(|| certificate.onnx.clone());
-        let vnnlib = self.vnnlib.unwrap_or_else(|| certificate.vnnlib.clone());
-        let (network, property) = read(&onnx, &vnnlib)?;
-        let regions = certificate.check(&network, &property);
-        let regions =
-            regions.map_err(|e| Failure::Check(format!("{}: {e}", self.certificate.display())))?;
+        let onnx = self.onnx.unwrap_or_else(|| certificate.onnx.path.clone());
+        let vnnlib = self
+            .vnnlib
+            .unwrap_or_else(|| certificate.vnnlib.path.clone());
+        let model = bytes(&onnx, "the network of the certificate")?;
+        let text = bytes(&vnnlib, "the property of the certificate")?;
+        let proved = certificate.check(&model, &text);
+        let mut proved =
+            proved.map_err(|e| Failure::Check(format!("{}: {e}", self.certificate.display())))?;
+        (proved.onnx.path, proved.vnnlib.path) = (onnx, vnnlib);
         // A closed pipe (`| head`) is not an error.
-        let _ = writeln!(std::io::stdout(), "proved: {regions} regions checked");
+        let _ = writeln!(std::io::stdout(), "{proved}");
         Ok(())
     }
 }

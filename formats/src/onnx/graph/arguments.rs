@@ -56,6 +56,14 @@ impl<'a> Arguments<'a> {
         self.node.attribute(name)
     }
 
+    /// A text; empty if there is none.
+    pub(super) fn text(&self, name: &str) -> &'a str {
+        let text = self
+            .attribute(name)
+            .map_or(&[][..], |attribute| &attribute.s);
+        std::str::from_utf8(text).unwrap_or_default()
+    }
+
     pub(super) fn integer(&self, name: &str, otherwise: i64) -> i64 {
         self.attribute(name)
             .map_or(otherwise, |attribute| attribute.i)
@@ -134,6 +142,6 @@ pub(super) fn constant(arguments: &Arguments<'_>) -> Result<Value, String> {
     if matches!(&values, Values::Real(values) if values.iter().any(|v| !v.is_finite())) {
         return Err("holds a number that is not finite".to_owned());
     }
-    let shape = Shape::new(dims).ok_or("is too large")?;
+    let shape = Shape::new(dims).ok_or("has more than 2²⁶ elements")?;
     Ok(Value::Constant(Constant { shape, values }))
 }

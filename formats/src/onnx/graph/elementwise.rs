@@ -57,6 +57,9 @@ pub(super) fn sum(
     recorder: &mut Recorder,
     sign_of_second: f64,
 ) -> Result<Value, String> {
+    if let (Value::Variable(a), Value::Variable(b)) = (arguments.value(0)?, arguments.value(1)?) {
+        return sum_of_two(arguments, recorder, [a, b], sign_of_second);
+    }
     let Spread { x, constant, mixed } = spread(arguments, recorder)?;
     let (own, other) = if mixed.variable_first {
         (1.0, sign_of_second)
@@ -71,6 +74,42 @@ pub(super) fn sum(
     recorder
         .push(arguments, vec![x.index], operation, x.shape)
         .map(Value::Variable)
+}
+
+/// Two values that depend on the inputs, broadcast to one shape.
+fn sum_of_two(
+    arguments: &Arguments<'_>,
+    recorder: &mut Recorder,
+    values: [&Variable; 2],
+    sign: f64,
+) -> Result<Value, String> {
+    let [a, b] = values.map(|v| &v.shape);
+    let whole = a
+        .broadcast(b)
+        .ok_or_else(|| format!("shapes {:?} and {:?} do not fit", a.dims(), b.dims()))?;
+    let mut from = Vec::new();
+    for value in values {
+        from.push(over_whole(arguments, recorder, value, &whole)?.index);
+    }
+    recorder
+        .push(arguments, from, Operation::Sum { sign }, whole)
+        .map(Value::Variable)
+}
+
+/// A value broadcast to a shape.
+fn over_whole(
+    arguments: &Arguments<'_>,
+    recorder: &mut Recorder,
+    value: &Variable,
+    whole: &Shape,
+) -> Result<Variable, String> {
+    let (own, index) = (&value.shape, value.index);
+    if own.size() == whole.size() {
+        let shape = whole.clone();
+        return Ok(Variable { index, shape });
+    }
+    let pick = (0..whole.size()).map(|i| own.index_in(whole, i)).collect();
+    recorder.push(arguments, vec![index], Operation::Move(pick), whole.clone())
 }
 
 pub(super) fn multiply(
@@ -109,14 +148,7 @@ fn spread<'a>(arguments: &Arguments<'a>, recorder: &mut Recorder) -> Result<Spre
         .broadcast(other)
         .ok_or_else(|| format!("shapes {:?} and {:?} do not fit", own.dims(), other.dims()))?;
     let constant = over(mixed.values, other, &whole);
-    let index = mixed.variable.index;
-    let x = if own.size() == whole.size() {
-        let shape = whole;
-        Variable { index, shape }
-    } else {
-        let pick = (0..whole.size()).map(|i| own.index_in(&whole, i)).collect();
-        recorder.push(arguments, vec![index], Operation::Move(pick), whole)?
-    };
+    let x = over_whole(arguments, recorder, mixed.variable, &whole)?;
     Ok(Spread { x, constant, mixed })
 }
 

@@ -3,7 +3,7 @@
 use super::arguments::{Arguments, Mixed};
 use super::elementwise::over;
 use super::{Constant, Operation, Recorder, Value};
-use crate::onnx::shape::{MOST_ELEMENTS, Shape};
+use crate::onnx::shape::{MOST_WEIGHTS, Shape};
 use crate::onnx::tensor::Values;
 use std::sync::Arc;
 
@@ -59,11 +59,13 @@ impl Linear {
 
     fn checked(self) -> Result<Self, String> {
         let terms = self.outputs().checked_mul(self.inner);
-        if terms.is_some_and(|terms| terms <= MOST_ELEMENTS) {
-            Ok(self)
-        } else {
-            Err("is too large".to_owned())
+        if terms.is_some_and(|terms| terms <= MOST_WEIGHTS) {
+            return Ok(self);
         }
+        let (inputs, outputs) = (self.inputs(), self.outputs());
+        Err(format!(
+            "maps {inputs} elements to {outputs} by more than {MOST_WEIGHTS} (2²⁶) weights"
+        ))
     }
 }
 
@@ -115,7 +117,7 @@ pub(super) fn matmul(arguments: &Arguments<'_>, recorder: &mut Recorder) -> Resu
         inner,
     };
     let operation = Operation::Linear(linear.checked()?);
-    recorder.charge(mixed.values.len())?;
+    recorder.charge_constant(mixed.values.len())?;
     recorder
         .push(arguments, vec![mixed.variable.index], operation, shape)
         .map(Value::Variable)
@@ -130,7 +132,7 @@ pub(super) fn gemm(arguments: &Arguments<'_>, recorder: &mut Recorder) -> Result
     }
     let (linear, shape) = product(arguments, &mixed)?;
     let bias = bias(arguments, &shape)?;
-    recorder.charge(mixed.values.len())?;
+    recorder.charge_constant(mixed.values.len())?;
     let mut push = |from: usize, operation| {
         let value = recorder.push(arguments, vec![from], operation, shape.clone());
         value.map(|value| value.index)
@@ -174,7 +176,8 @@ fn product(arguments: &Arguments<'_>, mixed: &Mixed<'_>) -> Result<(Linear, Shap
     if inner != inner_b {
         return Err(unfit(a, b));
     }
-    let shape = Shape::new(vec![rows, columns]).ok_or("is too large")?;
+    let shape = Shape::new(vec![rows, columns])
+        .ok_or_else(|| format!("gives more than {MOST_WEIGHTS} elements"))?;
     let linear = Linear {
         constant: mixed.values.into(),
         variable_first: mixed.variable_first,

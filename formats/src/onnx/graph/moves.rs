@@ -111,7 +111,7 @@ pub(super) fn transpose(
         .map(|i| dims[i + 1..].iter().product())
         .collect();
     let new: Vec<usize> = order.iter().map(|&p| dims[p]).collect();
-    let shape = Shape::new(new.clone()).ok_or("is too large")?;
+    let shape = Shape::new(new.clone()).ok_or("has more than 2²⁶ elements")?;
     let from = |mut flat: usize| {
         let mut index = 0;
         for (&d, &p) in new.iter().zip(&order).rev() {
@@ -160,7 +160,7 @@ pub(super) fn concat(arguments: &Arguments<'_>, recorder: &mut Recorder) -> Resu
     }
     let inner: usize = first[along + 1..].iter().product();
     let whole = dims[along] * inner;
-    let shape = Shape::new(dims).ok_or("is too large")?;
+    let shape = Shape::new(dims).ok_or("has more than 2²⁶ elements")?;
     let width = |part: usize| parts[part].shape.dims()[along] * inner;
     let from = |flat: usize| {
         let (outer, mut within) = (flat / whole, flat % whole);
