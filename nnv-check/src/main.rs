@@ -25,7 +25,7 @@ struct Arguments {
 }
 
 fn main() -> ExitCode {
-    match run(Arguments::parse()) {
+    match run(&Arguments::parse()) {
         Ok(Ok(proved)) => {
             // A reader that has seen enough may close the pipe.
             let _ = writeln!(std::io::stdout(), "{proved}");
@@ -44,7 +44,7 @@ fn main() -> ExitCode {
 
 type Checked = Result<Proved, cede_nnv_check::CertificateError>;
 
-fn run(arguments: Arguments) -> Result<Checked, String> {
+fn run(arguments: &Arguments) -> Result<Checked, String> {
     let path = &arguments.certificate;
     let certificate = named(path, std::fs::read_to_string(path))?;
     let certificate = named(path, Certificate::from_text(&certificate))?;

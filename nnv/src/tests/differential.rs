@@ -75,13 +75,16 @@ fn one(seed: u64, fault: Fault) -> Tally {
     let ways = [Branching::Auto, Branching::Inputs, Branching::Phases];
     let options = SearchOptions::default()
         .seed(seed)
-        .branching(ways[(seed % 3) as usize])
-        .record(true);
-    let deadline = Instant::now() + Duration::from_millis(40);
+        .branching(ways[(seed % 3) as usize]);
     let mut prepared = Prepared::new(&network, &[]);
     (fault.bounds)(&mut prepared);
-    let report = verify_prepared(&network, &prepared, &property, options, deadline);
-    match report.answer {
+    let report = |options| {
+        let deadline = Instant::now() + Duration::from_millis(40);
+        verify_prepared(&network, &prepared, &property, options, deadline)
+    };
+    // A prover that records asks the checker, which would hide its own mistakes.
+    let alone = report(options);
+    match alone.answer {
         Answer::Sat(witness) => {
             tally.sat += 1;
             if !truth || !case.problem.is_solved_by(witness.point()) {
@@ -93,11 +96,14 @@ fn one(seed: u64, fault: Fault) -> Tally {
             if truth {
                 wrong("unsat, but there is a solution".to_owned());
             }
-            let nothing = Source::new(Path::new("n"), &[]);
-            let certificate = Certificate::new("p", nothing.clone(), nothing, report.proofs);
-            let read = Certificate::from_text(&certificate.to_text()).expect("its own text");
-            if let Err(error) = read.check_proofs(&network, &property) {
-                wrong(format!("its own certificate is refused: {error}"));
+            let recorded = report(options.record(true));
+            if recorded.answer == Answer::Unsat {
+                let nothing = Source::new(Path::new("n"), &[]);
+                let certificate = Certificate::new("p", nothing.clone(), nothing, recorded.proofs);
+                let read = Certificate::from_text(&certificate.to_text()).expect("its own text");
+                if let Err(error) = read.check_proofs(&network, &property) {
+                    wrong(format!("its own certificate is refused: {error}"));
+                }
             }
         }
         _ => tally.open += 1,
@@ -259,10 +265,10 @@ fn planted_faults_are_found() {
         }),
     );
     found(
-        "an upper line a millionth too low",
+        "an upper line without its offset",
         with(|p| {
             p.enclose = |l, u| Lines {
-                upper_offset: Lines::relu(l, u).upper_offset * (1.0 - 1e-6),
+                upper_offset: 0.0,
                 ..Lines::relu(l, u)
             }
         }),

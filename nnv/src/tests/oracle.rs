@@ -90,7 +90,7 @@ impl Problem {
                     .collect(),
                 constant: BigRational::zero(),
             };
-            self.from_layer(
+            self.any_pattern(
                 0,
                 &(0..self.inputs).map(unit).collect::<Vec<_>>(),
                 rows,
@@ -101,7 +101,7 @@ impl Problem {
 
     /// Whether some pattern of the layers from `index` on has a solution, their inputs given as
     /// forms of the network's.
-    fn from_layer(&self, index: usize, values: &[Form], rows: Vec<Row>, clause: &Clause) -> bool {
+    fn any_pattern(&self, index: usize, values: &[Form], rows: Vec<Row>, clause: &Clause) -> bool {
         if !feasible(rows.clone()) {
             return false;
         }
@@ -118,7 +118,7 @@ impl Problem {
             .map(|(row, b)| Form::sum(&exact(row), values, fraction(*b)))
             .collect();
         if !layer.relu {
-            return self.from_layer(index + 1, &forms, rows, clause);
+            return self.any_pattern(index + 1, &forms, rows, clause);
         }
         (0_u32..1 << forms.len()).any(|pattern| {
             let mut rows = rows.clone();
@@ -131,7 +131,7 @@ impl Problem {
                     *value = form.scaled(&BigRational::zero());
                 }
             }
-            self.from_layer(index + 1, &values, rows, clause)
+            self.any_pattern(index + 1, &values, rows, clause)
         })
     }
 }
