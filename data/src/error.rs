@@ -67,6 +67,9 @@ pub enum Problem {
         /// The site that was asked for.
         site: String,
     },
+    /// The folder holds no folder of recordings.
+    #[error("no folder with recorded tracks here")]
+    NoSites,
     /// A file without rows.
     #[error("no rows")]
     Empty,
@@ -155,6 +158,9 @@ impl Problem {
             Self::Unreadable(_) => "check the path and that you may read it",
             Self::NoRecordings { .. } => {
                 "name the folder that holds the site's vehicle_tracks_NNN.csv, or its parent, and the site with --site"
+            }
+            Self::NoSites => {
+                "name the folder that holds the sites' folders, or one site with --site"
             }
             Self::Empty => "restore the file from its source",
             Self::MissingColumn { mend, .. } => mend,

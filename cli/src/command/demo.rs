@@ -40,7 +40,7 @@ pub(crate) fn run() -> Result<(), Failure> {
         };
         rows.extend(plan.judge(&dataset, |row, drives| report.add(row, drives))?);
     }
-    print!("{}", table::render(&rows, false));
+    print!("{}", table::render(&rows));
     report.sweep(&dataset, Contract::WORST_CASE)?;
     let page = Path::new(REPORT);
     report.write(page)?;

@@ -19,6 +19,8 @@ pub type ConfidenceInterval = [f64; 2];
 pub struct TableRow {
     /// Name of the driver.
     pub driver: String,
+    /// Name of the site.
+    pub site: String,
     /// Name of the split.
     pub split: String,
     /// `joint` or `ego`.
@@ -74,6 +76,8 @@ pub struct TableRow {
 pub struct Label<'a> {
     /// Name of the driver.
     pub driver: &'a str,
+    /// Name of the site.
+    pub site: &'a str,
     /// Name of the split.
     pub split: &'a str,
     /// `joint` or `ego`.
@@ -98,6 +102,7 @@ impl TableRow {
             drives.iter().map(|drive| &drive.encounter.id).collect();
         Self {
             driver: label.driver.to_owned(),
+            site: label.site.to_owned(),
             split: label.split.to_owned(),
             mode: label.mode.to_owned(),
             until: label.until.to_owned(),

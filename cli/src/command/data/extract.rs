@@ -91,7 +91,7 @@ impl<'d> EncounterRow<'d> {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let dataset = args.source.load_seeded("--seed", args.seed, 0)?;
+    let dataset = args.source.load_one_seeded("--seed", args.seed, 0)?;
     super::name_passed_over(&dataset);
     not_empty(&dataset)?;
     if let Some(path) = &args.out {

@@ -35,7 +35,7 @@ fn svg(path: &str) -> Result<PathBuf, &'static str> {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let dataset = args.source.load_seeded("--seed", args.seed, 0)?;
+    let dataset = args.source.load_one_seeded("--seed", args.seed, 0)?;
     super::name_passed_over(&dataset);
     let summary = Summary::of(&dataset);
     scene::write(&args.draw, &dataset)?;
