@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::plural::Count;
 use cede_controller::ConflictKind;
-use cede_data::lanelet::{LineKind, Map};
+use cede_data::lanelet::{Lanelet, LineKind, Map};
 use cede_data::{Dataset, Manoeuvre, output};
 use std::fmt::Write as _;
 use std::path::Path;
@@ -55,7 +55,7 @@ impl View {
         let of_map = dataset
             .map
             .iter()
-            .flat_map(|map| map.lanes.iter().flatten().copied());
+            .flat_map(|map| map.lanelets.iter().flat_map(Lanelet::outline));
         let tracks = dataset.recordings.iter().flat_map(|r| &r.tracks);
         let of_tracks = tracks.flat_map(|t| t.states.iter().map(|s| [s.x, s.y]));
         let nothing = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
@@ -113,8 +113,8 @@ impl View {
 }
 
 fn lanes(svg: &mut String, view: &View, map: &Map) {
-    for lane in &map.lanes {
-        let path = view.path(lane.iter().copied());
+    for lane in &map.lanelets {
+        let path = view.path(lane.outline());
         let _ = writeln!(svg, "<path d=\"{path}Z\" fill=\"#e7e5e4\"/>");
     }
     for line in &map.lines {

@@ -12,6 +12,7 @@ pub mod lanelet;
 mod motion;
 pub mod output;
 pub mod projection;
+mod rights;
 mod site;
 mod summary;
 pub mod synthetic;
@@ -21,8 +22,9 @@ mod tracks;
 pub use encounter::{Encounter, EncounterId, Manoeuvre, Participant, Role, Sample, SimRoute};
 pub use error::{DataError, Problem};
 pub use extract::{NEAR, extract};
+pub use rights::{Entry, Rights, Rule};
 pub use site::{Files, Site};
-pub use summary::{Distribution, FileSummary, REST, Summary};
+pub use summary::{Distribution, FileSummary, REST, RightsSummary, Summary};
 pub use tracks::{RawState, Recording, STEP_MS, Track};
 
 use lanelet::Map;
@@ -89,9 +91,8 @@ impl Dataset {
             .collect::<Result<Vec<_>, _>>()?;
         let map = found.map.as_deref().map(lanelet::read).transpose()?;
         Ok(Self {
-            map,
             passed_over: found.passed_over,
-            ..Self::new(site, recordings)
+            ..Self::new(site, recordings, map)
         })
     }
 
@@ -104,18 +105,18 @@ impl Dataset {
         files::sites(dir)
     }
 
-    /// The encounters of `recordings` at `site`.
+    /// The encounters of `recordings` at `site`, with the rights that its `map` gives them.
     #[must_use]
-    pub fn new(site: Site, recordings: Vec<Recording>) -> Self {
+    pub fn new(site: Site, recordings: Vec<Recording>, map: Option<Map>) -> Self {
         let encounters = recordings
             .par_iter()
-            .flat_map_iter(|recording| extract(&site, recording))
+            .flat_map_iter(|recording| extract(&site, map.as_ref(), recording))
             .collect();
         Self {
             site,
             recordings,
             encounters,
-            map: None,
+            map,
             passed_over: Vec::new(),
         }
     }
@@ -126,7 +127,7 @@ impl Dataset {
     pub fn every_pair(&self) -> Self {
         let mut site = self.site.clone();
         site.every_pair = true;
-        Self::new(site, self.recordings.clone())
+        Self::new(site, self.recordings.clone(), self.map.clone())
     }
 
     /// The encounters of `split`, in order.

@@ -2,7 +2,7 @@
 
 use cede_controller::ConflictKind;
 use cede_controller::kinematics::{State, advance, clamp_acceleration};
-use cede_data::lanelet::LineKind;
+use cede_data::lanelet::{Lanelet, LineKind};
 use cede_data::{Dataset, Encounter, REST, Role, Split};
 use cede_tests::interaction;
 
@@ -119,7 +119,8 @@ fn the_map_lies_under_the_tracks() {
             .flat_map(|r| &r.tracks)
             .flat_map(|t| &t.states);
         let states: Vec<_> = states.step_by(997).collect();
-        let on_lane = |p: [f64; 2]| map.lanes.iter().any(|lane| inside(lane, p));
+        let lanes: Vec<_> = map.lanelets.iter().map(Lanelet::outline).collect();
+        let on_lane = |p: [f64; 2]| lanes.iter().any(|lane| inside(lane, p));
         let in_lane = states.iter().filter(|s| on_lane([s.x, s.y])).count();
         let share = in_lane as f64 / states.len() as f64;
         println!(

@@ -8,6 +8,16 @@ use cede_controller::{Part, RightOfWay, VehicleState};
 use cede_data::encounter::Encounter;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 
+/// Who may go first, as judged vehicle `ego` sees it; unsettled at an all-way stop.
+#[must_use]
+pub fn right_of_way(encounter: &Encounter, ego: usize) -> RightOfWay {
+    match encounter.rights.settled() {
+        Some(first) if first as usize == ego => RightOfWay::Ego,
+        Some(_) => RightOfWay::Other,
+        None => RightOfWay::Unsettled,
+    }
+}
+
 /// The bystanders of an encounter whose routes meet that of one of its judged vehicles.
 #[derive(Clone, Debug)]
 pub struct Bystanders {
@@ -111,7 +121,7 @@ impl<'e> ObservationModel<'e> {
                 },
                 other: bare[1 - i],
                 kind: self.kind,
-                right_of_way: RightOfWay::Unsettled,
+                right_of_way: right_of_way(self.encounter, i),
                 part: if i == 0 { Part::Left } else { Part::Other },
                 last_svo: if i == 0 {
                     last_svo
@@ -149,6 +159,7 @@ impl<'e> ObservationModel<'e> {
             footprint: Footprint::PAPER,
             leader: None,
             crosser: None,
+            control: self.encounter.participants[i].entry.control,
         }
     }
 }
