@@ -104,6 +104,11 @@ impl Source {
         self.data == "synthetic"
     }
 
+    /// Whether several sites are named.
+    pub(crate) fn is_several(&self) -> bool {
+        self.site.len() > 1 || self.site.iter().any(|site| site == "all")
+    }
+
     /// The sites of the recordings, as they are named on the command line.
     pub(crate) fn sites(&self) -> String {
         if self.site.is_empty() {

@@ -236,3 +236,171 @@ fn general(parties: [Party<'_>; 2]) -> Rights {
         rule: if first.is_some() { rule } else { Rule::Open },
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lanelet::{Lanelet, OnLanelet};
+    use crate::tracks::RawState;
+
+    /// A vehicle that comes from afar with this heading (rad), on lanelet `lanelet`, then on the next.
+    fn track(heading: f64) -> Track {
+        let state = |i: i32| {
+            let s = f64::from(i) - 30.0;
+            RawState {
+                x: s * heading.cos(),
+                y: s * heading.sin(),
+                vx: 0.0,
+                vy: 0.0,
+                heading,
+            }
+        };
+        Track {
+            id: 1,
+            first_ms: 0,
+            length: 4.0,
+            width: 2.0,
+            states: (0..30).map(state).collect(),
+        }
+    }
+
+    fn trace(lanelet: usize) -> Trace {
+        let on = |lanelet, from| OnLanelet {
+            lanelet,
+            from,
+            changed: false,
+        };
+        Trace(vec![on(lanelet, 0), on(lanelet + 1, 20)])
+    }
+
+    fn regulation(first: &[usize], yielding: &[usize], sign: Option<Sign>) -> Regulation {
+        Regulation {
+            kind: RegulationKind::RightOfWay,
+            first: first.to_vec(),
+            yielding: yielding.to_vec(),
+            lines: Vec::new(),
+            sign,
+        }
+    }
+
+    /// What is read if the left-turner drives east on lanelets 0 and 1, the other with `heading` (rad) on
+    /// 2 and 3.
+    fn read(regulations: Vec<Regulation>, heading: f64) -> ([Control; 2], Rights) {
+        let lanelet = || Lanelet::new(&[[0.0, 2.0], [9.0, 2.0]], &[[0.0, 0.0], [9.0, 0.0]], None);
+        let map = Map {
+            lanelets: (0..4).map(|_| lanelet()).collect(),
+            regulations,
+            ..Map::default()
+        };
+        let (tracks, traces) = ([track(0.0), track(heading)], [trace(0), trace(2)]);
+        let party = |i: usize| Party {
+            track: &tracks[i],
+            trace: &traces[i],
+            manoeuvre: [Manoeuvre::Left, Manoeuvre::Straight][i],
+            arrival: 29,
+        };
+        let parties = [party(0), party(1)];
+        let duties = parties.map(|party| map.duty(party));
+        let rights = map.rights(parties, [&duties[0], &duties[1]]);
+        (duties.map(|duty| duty.control), rights)
+    }
+
+    const WEST: f64 = std::f64::consts::PI;
+    const NORTH: f64 = WEST / 2.0;
+
+    #[test]
+    fn without_signs_oncoming_traffic_and_who_comes_from_the_right_go_first() {
+        let by = |heading| read(Vec::new(), heading).1;
+        let first = |first, rule| Rights {
+            first: Some(first),
+            rule,
+        };
+        assert_eq!(by(WEST), first(Role::Other, Rule::LeftTurn));
+        assert_eq!(by(NORTH), first(Role::Other, Rule::Right));
+        assert_eq!(by(-NORTH), first(Role::Left, Rule::Right));
+        assert_eq!(
+            by(0.1),
+            Rights {
+                first: None,
+                rule: Rule::Open
+            }
+        );
+        assert_eq!(read(Vec::new(), WEST).0, [Control::Free; 2]);
+    }
+
+    #[test]
+    fn who_has_a_sign_gives_way_to_who_has_none() {
+        let stop = || vec![regulation(&[], &[2], Some(Sign::Stop))];
+        let (controls, rights) = read(stop(), WEST);
+        assert_eq!(controls, [Control::Free, Control::Stop]);
+        assert_eq!(
+            (rights.first, rights.rule),
+            (Some(Role::Left), Rule::MinorRoad)
+        );
+        assert_eq!(rights.settled(), Some(Role::Left));
+        // Both stop: the general rule counts again.
+        let both = regulation(&[], &[0], Some(Sign::Yield));
+        let (controls, rights) = read([stop(), vec![both]].concat(), WEST);
+        assert_eq!(controls, [Control::Yield, Control::Stop]);
+        assert_eq!(rights.rule, Rule::LeftTurn);
+    }
+
+    #[test]
+    fn a_regulation_that_names_both_counts_more_and_a_signed_one_most() {
+        let named = regulation(&[0], &[2], Some(Sign::Stop));
+        let (_, rights) = read(vec![named.clone()], NORTH);
+        assert_eq!(
+            (rights.first, rights.rule),
+            (Some(Role::Left), Rule::Regulation)
+        );
+        let unsigned = regulation(&[2], &[0], None);
+        let (controls, rights) = read(vec![unsigned.clone()], NORTH);
+        assert_eq!(controls, [Control::Free; 2]);
+        assert_eq!(
+            (rights.first, rights.rule),
+            (Some(Role::Other), Rule::Regulation)
+        );
+        let (_, rights) = read(vec![unsigned, named], NORTH);
+        assert_eq!(rights.first, Some(Role::Left));
+    }
+
+    #[test]
+    fn at_an_all_way_stop_nothing_is_settled_but_a_tie() {
+        let stop = Regulation {
+            kind: RegulationKind::AllWayStop,
+            ..regulation(&[], &[0, 2], None)
+        };
+        let (controls, rights) = read(vec![stop], WEST);
+        assert_eq!(controls, [Control::AllWayStop; 2]);
+        assert_eq!(
+            (rights.first, rights.rule),
+            (Some(Role::Other), Rule::AllWayStop)
+        );
+        assert_eq!(rights.settled(), None);
+    }
+
+    #[test]
+    fn the_line_is_where_the_path_crosses_it_before_the_meeting() {
+        let mut stop = regulation(&[], &[0], Some(Sign::Stop));
+        // The left-turner is at x = −9 in its state 21.
+        stop.lines = vec![vec![[-9.5, -3.0], [-9.5, 3.0]]];
+        let lanelet = || Lanelet::new(&[[0.0, 2.0], [9.0, 2.0]], &[[0.0, 0.0], [9.0, 0.0]], None);
+        let map = Map {
+            lanelets: vec![lanelet(), lanelet()],
+            regulations: vec![stop],
+            ..Map::default()
+        };
+        let (track, trace) = (track(0.0), trace(0));
+        let duty = |arrival| {
+            map.duty(Party {
+                track: &track,
+                trace: &trace,
+                manoeuvre: Manoeuvre::Left,
+                arrival,
+            })
+        };
+        assert_eq!((duty(29).control, duty(29).line), (Control::Stop, Some(21)));
+        // Who meets the other before its line is told nothing there.
+        assert_eq!(duty(15).control, Control::Free);
+    }
+}

@@ -3,8 +3,8 @@
 use super::{Dataset, STEP_MS};
 use crate::encounter::{Encounter, Manoeuvre, Participant, Role, Sample};
 use crate::rights::Rule;
+use cede_controller::ConflictKind;
 use cede_controller::kinematics::{MAX_ACCELERATION, STEP};
-use cede_controller::{ConflictKind, Control};
 use serde::Serialize;
 use std::collections::{BTreeMap, HashSet};
 
@@ -54,6 +54,8 @@ pub struct Summary {
     pub acceleration_within_bounds: f64,
     /// Who goes first by the rules of the road, and how often that vehicle did; the most frequent first.
     pub rights: Vec<RightsSummary>,
+    /// Speed limit of the judged vehicles' ways through the map, m/s; of those that have one.
+    pub limit: Distribution,
     /// How many of all recorded vehicles do what.
     pub manoeuvres: BTreeMap<&'static str, usize>,
 }
@@ -170,9 +172,17 @@ impl Summary {
             acceleration_within_bounds: within as f64 / accelerations.len().max(1) as f64,
             acceleration: Distribution::of(accelerations),
             rights: rights(all),
+            limit: Distribution::of(limits(all)),
             manoeuvres: manoeuvres(dataset),
         }
     }
+}
+
+fn limits(encounters: &[Encounter]) -> impl Iterator<Item = f64> {
+    let judged = encounters
+        .iter()
+        .flat_map(|e| Role::BOTH.map(|role| e.judged(role)));
+    judged.filter_map(|vehicle| vehicle.entry.limit.map(f64::from))
 }
 
 fn rights(encounters: &[Encounter]) -> Vec<RightsSummary> {

@@ -7,6 +7,7 @@ use cede_controller::{ConflictKind, Footprint, NearbyVehicle, Pair, TrafficConte
 use cede_controller::{Part, RightOfWay, VehicleState};
 use cede_data::encounter::Encounter;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4};
+use core::ops::Range;
 
 /// Who may go first, as judged vehicle `ego` sees it; unsettled at an all-way stop.
 #[must_use]
@@ -21,8 +22,17 @@ pub fn right_of_way(encounter: &Encounter, ego: usize) -> RightOfWay {
 /// The bystanders of an encounter whose routes meet that of one of its judged vehicles.
 #[derive(Clone, Debug)]
 pub struct Bystanders {
-    /// How the route of the judged vehicle meets that of the participant with this number.
-    conflicts: Vec<(RouteConflict, usize)>,
+    meetings: Vec<Bystander>,
+}
+
+/// A bystander whose route meets that of the judged vehicle.
+#[derive(Clone, Debug)]
+struct Bystander {
+    /// Steps during which it is there: most are not, most of the time, and nothing else of those is read.
+    there: Range<usize>,
+    /// Its number among the participants.
+    index: usize,
+    conflict: RouteConflict,
 }
 
 impl Bystanders {
@@ -42,10 +52,15 @@ impl Bystanders {
             ];
             let conflict = conflict(&crossroads(routes).ok()?, 0).copied()?;
             conflict.zones().next()?;
-            Some((conflict, index))
+            let appears = other.appears as usize;
+            Some(Bystander {
+                there: appears..appears + other.record.len(),
+                index,
+                conflict,
+            })
         };
         Self {
-            conflicts: (2..encounter.participants.len())
+            meetings: (2..encounter.participants.len())
                 .filter_map(conflict)
                 .collect(),
         }
@@ -54,17 +69,18 @@ impl Bystanders {
     /// What they are, at `step` of their record, to the judged vehicle at arc length `s` (m).
     #[must_use]
     pub fn around(&self, encounter: &Encounter, step: usize, s: f32) -> TrafficContext {
-        let there = self.conflicts.iter().filter_map(|(conflict, index)| {
-            let bystander = encounter.participants.get(*index)?;
-            let k = step.checked_sub(bystander.appears as usize)?;
-            let sample = bystander.record.get(k)?;
+        let meetings = self.meetings.iter();
+        let there = meetings.filter(|meeting| meeting.there.contains(&step));
+        let nearby = there.filter_map(|meeting| {
+            let record = &encounter.participants.get(meeting.index)?.record;
+            let sample = record.get(step - meeting.there.start)?;
             Some(NearbyVehicle {
-                conflict,
+                conflict: &meeting.conflict,
                 s: sample.s,
                 speed: sample.v,
             })
         });
-        TrafficContext::new(s, there)
+        TrafficContext::new(s, nearby)
     }
 }
 

@@ -69,8 +69,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if args.transfer.is_some() && args.source.is_synthetic() {
         return Err(Failure::ignored("--transfer", "--data synthetic"));
     }
-    let rows = plan::rows(args)?;
     let sites = args.source.load(1)?;
+    let rows = plan::rows(args, args.source.is_several())?;
     sites.iter().try_for_each(trainable)?;
     let transfer = plan::transfer_site(args)?;
     let every_pair = plan::every_pair(&rows, &sites);

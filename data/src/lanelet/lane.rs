@@ -59,6 +59,12 @@ impl Lanelet {
             .collect()
     }
 
+    /// The point in the middle of it.
+    #[must_use]
+    pub fn middle(&self) -> MapPoint {
+        self.centre[CENTRES / 2]
+    }
+
     /// The ends of both bounds, where the lanelet is left.
     fn exit(&self) -> Option<[MapPoint; 2]> {
         Some([*self.left.last()?, *self.right.last()?])

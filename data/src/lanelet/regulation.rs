@@ -17,6 +17,14 @@ pub struct Regulation {
     pub sign: Option<Sign>,
 }
 
+impl Regulation {
+    /// Each lanelet that gives way, with each that it gives way to; none at an all-way stop.
+    pub fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let of = |&yielding: &usize| self.first.iter().map(move |&first| (yielding, first));
+        self.yielding.iter().flat_map(of)
+    }
+}
+
 /// What kind of regulation it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegulationKind {

@@ -90,6 +90,9 @@ fn print(summary: &Summary) {
     row("first distance left, m", &summary.left_distance_m);
     row("first distance other, m", &summary.other_distance_m);
     row("acceleration, m/s²", &summary.acceleration);
+    if summary.limit.n > 0 {
+        row("speed limit, m/s", &summary.limit);
+    }
     row("vehicles around", &summary.bystanders);
     let within = 100.0 * summary.acceleration_within_bounds;
     println!("\naccelerations within ±3 m/s²: {within:.2} %");

@@ -11,18 +11,18 @@ use cede_train::run::Algorithm;
 use std::collections::HashSet;
 use std::path::Path;
 
-/// The rows to train, each once, with their settings.
+/// The rows to train at one site or at `several`, each once, with their settings.
 ///
 /// # Errors
 /// A setting is out of its range, or its row is not trained.
-pub(super) fn rows(args: &Args) -> Result<Vec<RowSettings>, Failure> {
+pub(super) fn rows(args: &Args, several: bool) -> Result<Vec<RowSettings>, Failure> {
     let mut rows: Vec<Algorithm> = Vec::new();
     for AlgorithmName(row) in &args.rows {
         if !rows.contains(row) {
             rows.push(*row);
         }
     }
-    settings::of_rows(&rows, &args.set)
+    settings::of_rows(&rows, several, &args.set)
 }
 
 /// The site of `--transfer`.
@@ -40,8 +40,10 @@ pub(super) fn transfer_site(args: &Args) -> Result<Option<Dataset>, Failure> {
 
 /// All pairs of vehicles at each of the `sites`, for algorithms among `rows` that use auxiliary encounters.
 pub(super) fn every_pair(rows: &[RowSettings], sites: &[Dataset]) -> Vec<Dataset> {
-    let auxiliary = |row: &RowSettings| row.algorithm.uses_auxiliary_encounters();
-    if rows.iter().any(auxiliary) {
+    if rows
+        .iter()
+        .any(|row| row.settings.uses_auxiliary_encounters())
+    {
         sites.iter().map(Dataset::every_pair).collect()
     } else {
         Vec::new()
@@ -120,7 +122,7 @@ impl<'d> Data<'d> {
             row: row.clone(),
             seed,
             round: None,
-            auxiliary: self.auxiliary(row.algorithm, &training),
+            auxiliary: self.auxiliary(row, &training),
             training,
             validation: of(Split::Validation).collect(),
             judged,
@@ -148,7 +150,7 @@ impl<'d> Data<'d> {
                 row: row.clone(),
                 seed,
                 round: Some(round),
-                auxiliary: self.auxiliary(row.algorithm, &training),
+                auxiliary: self.auxiliary(row, &training),
                 training,
                 validation: Vec::new(),
                 judged: self.sites.iter().zip(folds).map(judged).collect(),
@@ -157,8 +159,8 @@ impl<'d> Data<'d> {
     }
 
     /// The auxiliary encounters: all pairs of vehicles in the files of `training`.
-    fn auxiliary(self, algorithm: Algorithm, training: &[&Encounter]) -> Vec<&'d Encounter> {
-        if !algorithm.uses_auxiliary_encounters() {
+    fn auxiliary(self, row: &RowSettings, training: &[&Encounter]) -> Vec<&'d Encounter> {
+        if !row.settings.uses_auxiliary_encounters() {
             return Vec::new();
         }
         let file = |e: &Encounter| (e.id.site.clone(), e.id.file);
