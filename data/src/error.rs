@@ -189,7 +189,7 @@ impl Problem {
             }
             Self::Site(_) => "compare with data/src/sites/EP0.toml",
             Self::Map(_) => {
-                "restore the map from its source, or remove it: it serves for drawing only"
+                "restore the map from its source, or remove it: it serves for drawing and rights of way, nothing else"
             }
         }
     }

@@ -32,7 +32,7 @@ pub struct Rights {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rule {
-    /// None: there is no map, or the vehicles were not on it.
+    /// None: there is no map, it has no regulations, or the vehicles were not on it.
     #[default]
     Unknown,
     /// Both stop; who has stopped first goes first.
@@ -78,7 +78,8 @@ pub(crate) struct Duty {
 }
 
 impl Map {
-    /// The last thing that `party` is told before it meets the other.
+    /// The last thing that `party` is told before it meets the other. Nothing is known of a map without any
+    /// regulation: it may have been drawn without its signs.
     pub(crate) fn duty(&self, party: Party<'_>) -> Duty {
         let on = party.trace.0.iter().filter(|on| on.from <= party.arrival);
         let regulated = on.rev().find_map(|on| {
@@ -96,7 +97,7 @@ impl Map {
                 regulations,
             },
             None => Duty {
-                control: if party.trace.0.is_empty() {
+                control: if party.trace.0.is_empty() || self.regulations.is_empty() {
                     Control::Unknown
                 } else {
                     Control::Free
@@ -310,7 +311,9 @@ mod tests {
 
     #[test]
     fn without_signs_oncoming_traffic_and_who_comes_from_the_right_go_first() {
-        let by = |heading| read(Vec::new(), heading).1;
+        // A sign somewhere else.
+        let elsewhere = || vec![regulation(&[], &[], None)];
+        let by = |heading| read(elsewhere(), heading).1;
         let first = |first, rule| Rights {
             first: Some(first),
             rule,
@@ -325,7 +328,11 @@ mod tests {
                 rule: Rule::Open
             }
         );
-        assert_eq!(read(Vec::new(), WEST).0, [Control::Free; 2]);
+        assert_eq!(read(elsewhere(), WEST).0, [Control::Free; 2]);
+        assert_eq!(
+            read(Vec::new(), WEST),
+            ([Control::Unknown; 2], Rights::default())
+        );
     }
 
     #[test]

@@ -5,7 +5,7 @@
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Control {
-    /// It is not known.
+    /// It is not known: no map says so.
     #[default]
     Unknown,
     /// Nothing: the vehicle is on the major road, or there are no signs.

@@ -22,7 +22,7 @@ pub struct Lanelet {
 
 impl Lanelet {
     /// The lanelet between two bounds, either of which may be drawn in the wrong direction.
-    pub(super) fn new(left: &[MapPoint], right: &[MapPoint], limit: Option<f64>) -> Self {
+    pub(crate) fn new(left: &[MapPoint], right: &[MapPoint], limit: Option<f64>) -> Self {
         let (mut left, mut right) = (left.to_vec(), right.to_vec());
         if !side_by_side(&left, &right) {
             right.reverse();

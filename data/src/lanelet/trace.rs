@@ -205,7 +205,7 @@ mod tests {
                 .collect::<Vec<_>>()
         };
         // A metre to the left of the middle, so the lane of the opposite direction is as near.
-        let straight = track((0..40).map(|i| (f64::from(i), 2.0, 0.0)));
+        let straight = track((0..39).map(|i| (f64::from(i) + 0.5, 2.0, 0.0)));
         assert_eq!(lanelets(&straight), [0, 1]);
         assert_eq!(map.trace(&straight).0[1].from, 20);
         let west = track((0..40).map(|i| (40.0 - f64::from(i), 2.5, std::f64::consts::PI)));
