@@ -264,11 +264,7 @@ fn legend(svg: &mut String, view: &View, dataset: &Dataset) {
     }
     let ten = 10.0 * SCALE;
     entry(
-        format!(
-            "<path d=\"M{:.0} -4v8M{:.0} 0h{ten:.0}m0 -4v8\" stroke=\"#27272a\"/>",
-            30.0 - ten,
-            30.0 - ten
-        ),
+        format!("<path d=\"M0 -4v8M0 0h{ten:.0}m0 -4v8\" stroke=\"#27272a\"/>"),
         "",
     );
     let title = format!(

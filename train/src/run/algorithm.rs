@@ -116,10 +116,11 @@ impl Algorithm {
         match self.settings() {
             TrainSettings::Apg(settings) => TrainSettings::Apg(ApgSettings {
                 features: FeatureSet::Rights,
+                members: 2,
                 updates: 3000,
                 cost: Cost {
                     order: 5.0,
-                    late: 5.0,
+                    late: 12.0,
                     ..settings.cost
                 },
                 ..settings
