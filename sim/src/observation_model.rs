@@ -179,3 +179,46 @@ impl<'e> ObservationModel<'e> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::crossing;
+    use crate::meeting::{Meeting, path};
+    use cede_controller::Control;
+    use cede_data::encounter::Role;
+    use cede_data::{Rights, Rule};
+
+    /// What the two are told in training, and what the controller is told.
+    fn told(rule: Rule) -> [[RightOfWay; 2]; 2] {
+        let mut encounter = crossing([20.0, 8.0], [30.0, 8.0]);
+        encounter.rights = Rights {
+            first: Some(Role::Other),
+            rule,
+        };
+        encounter.participants[0].entry.control = Control::Stop;
+        let states = [State { s: 60.0, v: 5.0 }; 2];
+        let pairs = ObservationModel::new(&encounter).pairs(0, states, FRAC_PI_4);
+        let junction = Meeting::new(&encounter).unwrap().junction;
+        for i in 0..2 {
+            assert_eq!(
+                junction.path(path(i)).unwrap().control(),
+                pairs[i].ego.control
+            );
+            assert_eq!(pairs[i].ego.control, pairs[1 - i].other.control);
+        }
+        assert_eq!(pairs[0].ego.control, Control::Stop);
+        let conflict = |i: usize| junction.conflict(path(i), path(1 - i)).unwrap();
+        [
+            pairs.map(|pair| pair.right_of_way),
+            [0, 1].map(|i| conflict(i).right_of_way),
+        ]
+    }
+
+    #[test]
+    fn training_and_controller_are_told_the_same_right_of_way() {
+        let settled = [RightOfWay::Other, RightOfWay::Ego];
+        assert_eq!(told(Rule::LeftTurn), [settled; 2]);
+        assert_eq!(told(Rule::AllWayStop), [[RightOfWay::Unsettled; 2]; 2]);
+    }
+}

@@ -326,6 +326,21 @@ mod tests {
     }
 
     #[test]
+    fn signs_have_their_documented_places() {
+        let signs = |ego, other| {
+            let mut pair = pair();
+            (pair.ego.control, pair.other.control) = (ego, other);
+            let f = FeatureSet::Rights.of(&pair);
+            [f[19], f[20], f[21]]
+        };
+        use Control::{AllWayStop, Free, Stop, Unknown, Yield};
+        assert_eq!(signs(AllWayStop, AllWayStop), [1.0, 1.0, 1.0]);
+        assert_eq!(signs(AllWayStop, Free), [0.0, 1.0, 0.0]);
+        assert_eq!(signs(Yield, Stop), [0.0, 0.5, 1.0]);
+        assert_eq!(signs(Unknown, Free), [0.0; 3]);
+    }
+
+    #[test]
     fn raw_features_are_the_papers() {
         let f = FeatureSet::Raw.of(&pair());
         assert_eq!(f[..4], [-12.0, 0.0, 6.0, 0.0]);

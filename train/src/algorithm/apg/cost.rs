@@ -172,3 +172,37 @@ impl Cost {
         self.contact * short * short
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cede_data::Dataset;
+
+    #[test]
+    fn after_the_recorded_end_what_the_first_has_left_costs() {
+        let dataset = Dataset::synthetic(3, 1);
+        let encounter = &dataset.encounters[0];
+        let (end, first) = (encounter.steps as usize, encounter.first as usize);
+        let states = [0, 1].map(|i| State {
+            s: encounter.participants[i].conflict_s - 4.0,
+            v: 1.0,
+        });
+        let more = |step: usize| {
+            let [without, with] = [0.0, 3.0].map(|late| {
+                let cost = Cost {
+                    late,
+                    ..Cost::default()
+                };
+                let mut by = ByStates::default();
+                (cost.of(encounter, step, states, 0.5, &mut by), by)
+            });
+            (with.0 - without.0, with.1[first][0] - without.1[first][0])
+        };
+        let close = |(cost, slope): (f32, f32), expected: (f32, f32)| {
+            (cost - expected.0).abs() < 1e-3 && (slope - expected.1).abs() < 1e-3
+        };
+        assert!(close(more(end - 1), (0.0, 0.0)));
+        assert!(close(more(end), (12.0, -1.5)), "{:?}", more(end));
+        assert!(close(more(end + ORDER_OVERTIME + 1), (0.0, 0.0)));
+    }
+}
