@@ -1,6 +1,6 @@
 //! Who has to give way to whom where the ways of two vehicles meet: from the map, or by the general rules.
 
-use super::crossing::Point;
+use super::crossing::{Point, crosses};
 use super::lanelet::{Map, Regulation, RegulationKind, Sign, Trace};
 use super::tracks::{Track, wrap};
 use crate::encounter::{Manoeuvre, Role};
@@ -85,9 +85,10 @@ impl Map {
         let regulated = on.rev().find_map(|on| {
             let place = party.trace.0.iter().position(|other| other == on)?;
             let regulations: Vec<usize> = self.yielding(on.lanelet);
-            let lines = regulations.iter().flat_map(|&r| &self.regulations[r].lines);
-            let line =
-                crossed(party, lines).or_else(|| Some(party.trace.0.get(place + 1)?.from))?;
+            let of = |&index: &usize| self.regulations[index].lines.iter();
+            let lines: Vec<&Vec<Point>> = regulations.iter().flat_map(of).collect();
+            let after = party.trace.0.get(place + 1);
+            let line = crossed(party, &lines).or_else(|| Some(after?.from))?;
             (!regulations.is_empty() && line <= party.arrival).then_some((regulations, line))
         });
         match regulated {
@@ -193,17 +194,15 @@ impl Map {
 }
 
 /// The first state of `party` past one of `lines`, if it crosses one on its way to the other.
-fn crossed<'l>(
-    party: Party<'_>,
-    lines: impl Iterator<Item = &'l Vec<Point>> + Clone,
-) -> Option<usize> {
+fn crossed(party: Party<'_>, lines: &[&Vec<Point>]) -> Option<usize> {
     let states = party.track.states.get(..=party.arrival)?;
     let mut steps = states.windows(2).zip(1..);
     steps.find_map(|(step, index)| {
         let (from, to) = (step[0].position(), step[1].position());
-        let pieces = lines.clone().flat_map(|line| line.windows(2));
-        let mut pieces = pieces.map(|piece| super::crossing::crosses(from, to, piece[0], piece[1]));
-        pieces.any(|crosses| crosses).then_some(index)
+        let mut pieces = lines.iter().flat_map(|line| line.windows(2));
+        pieces
+            .any(|piece| crosses(from, to, piece[0], piece[1]))
+            .then_some(index)
     })
 }
 

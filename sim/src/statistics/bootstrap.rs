@@ -42,7 +42,7 @@ mod tests {
 
     /// Groups of `size` equal samples, as many as samples suffice for.
     fn width(size: usize) -> f64 {
-        let value = |group: usize| f64::from(u8::from(group % 2 == 0));
+        let value = |group: usize| f64::from(u8::from(group.is_multiple_of(2)));
         let samples = (0..400).map(|i| (i / size, value(i / size)));
         let [low, high] = mean_by_group(samples).unwrap();
         assert!(low < 0.5 && high > 0.5, "{low} {high}");
