@@ -107,7 +107,7 @@ impl Plan {
             let rounds = selection.rounds(dataset);
             if rounds.iter().all(|round| round.judged.is_empty()) {
                 return Err(Failure::input(
-                    format!("no encounters in `{selection}`"),
+                    format!("no encounters of {} in `{selection}`", dataset.site.name),
                     "name another --split, or add its files to the folder",
                 ));
             }
@@ -118,7 +118,10 @@ impl Plan {
                     Ok(evaluations) => {
                         let told = evaluations.into_iter().map(|e| left_out.drives(e));
                         let drives: Vec<_> = bar.suspend(|| told.flatten().collect());
-                        let row = TableRow::of(self.label(contender, selection, shield), &drives);
+                        let row = TableRow::of(
+                            self.label(contender, dataset, selection, shield),
+                            &drives,
+                        );
                         each(&row, &drives);
                         rows.push(row);
                     }
@@ -162,14 +165,16 @@ impl Plan {
         Ok(evaluations)
     }
 
-    fn label(
+    fn label<'l>(
         &self,
         contender: &Contender,
+        dataset: &'l Dataset,
         selection: Selection,
         shield: Option<Contract>,
-    ) -> Label<'static> {
+    ) -> Label<'l> {
         Label {
             driver: contender.name(),
+            site: &dataset.site.name,
             split: selection.name(),
             mode: match self.mode {
                 ModeName::Joint => "joint",

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::plural::Count;
 use cede_controller::ConflictKind;
-use cede_data::lanelet::{LineKind, Map};
+use cede_data::lanelet::{Lanelet, LineKind, Map, Regulation, RegulationKind};
 use cede_data::{Dataset, Manoeuvre, output};
 use std::fmt::Write as _;
 use std::path::Path;
@@ -13,7 +13,7 @@ const SCALE: f64 = 8.0;
 /// Margin around the scene, m.
 const MARGIN: f64 = 3.0;
 /// Height of the legend below it, m.
-const LEGEND: f64 = 8.0;
+const LEGEND: f64 = 11.0;
 /// Without a map, as much of the tracks' traffic is drawn, m.
 const WITHOUT_MAP: f64 = 1.0;
 
@@ -37,8 +37,12 @@ fn svg(dataset: &Dataset) -> String {
     let mut svg = view.header();
     if let Some(map) = &dataset.map {
         lanes(&mut svg, &view, map);
+        rights(&mut svg, &view, map);
     }
     tracks(&mut svg, &view, dataset);
+    if let Some(map) = &dataset.map {
+        arrows(&mut svg, &view, map);
+    }
     conflict_points(&mut svg, &view, dataset);
     legend(&mut svg, &view, dataset);
     svg + "</svg>\n"
@@ -55,7 +59,7 @@ impl View {
         let of_map = dataset
             .map
             .iter()
-            .flat_map(|map| map.lanes.iter().flatten().copied());
+            .flat_map(|map| map.lanelets.iter().flat_map(Lanelet::outline));
         let tracks = dataset.recordings.iter().flat_map(|r| &r.tracks);
         let of_tracks = tracks.flat_map(|t| t.states.iter().map(|s| [s.x, s.y]));
         let nothing = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
@@ -113,8 +117,8 @@ impl View {
 }
 
 fn lanes(svg: &mut String, view: &View, map: &Map) {
-    for lane in &map.lanes {
-        let path = view.path(lane.iter().copied());
+    for lane in &map.lanelets {
+        let path = view.path(lane.outline());
         let _ = writeln!(svg, "<path d=\"{path}Z\" fill=\"#e7e5e4\"/>");
     }
     for line in &map.lines {
@@ -129,6 +133,61 @@ fn lanes(svg: &mut String, view: &View, map: &Map) {
             LineKind::Crosswalk => "stroke=\"#ffffff\" stroke-width=\"1.6\"",
         };
         let _ = writeln!(svg, "<path d=\"{path}\" fill=\"none\" {style}/>");
+    }
+}
+
+/// Colours of the lanes that have the right of way, that give way, and where everybody stops.
+const FIRST: &str = "#86efac";
+const YIELDING: &str = "#fca5a5";
+const ALL_STOP: &str = "#fde047";
+
+/// The lanes of all regulations.
+fn rights(svg: &mut String, view: &View, map: &Map) {
+    svg.push_str("<g fill-opacity=\"0.7\">\n");
+    let lanes = |regulation: &Regulation| {
+        let yielding = match regulation.kind {
+            RegulationKind::AllWayStop => ALL_STOP,
+            RegulationKind::RightOfWay => YIELDING,
+        };
+        let first = regulation
+            .first
+            .clone()
+            .into_iter()
+            .map(|lane| (lane, FIRST));
+        let yielding = regulation
+            .yielding
+            .clone()
+            .into_iter()
+            .map(move |lane| (lane, yielding));
+        first.chain(yielding).collect::<Vec<_>>()
+    };
+    for (lane, colour) in map.regulations.iter().flat_map(lanes) {
+        let path = view.path(map.lanelets[lane].outline());
+        let _ = writeln!(svg, "<path d=\"{path}Z\" fill=\"{colour}\"/>");
+    }
+    svg.push_str("</g>\n");
+}
+
+/// An arrow from each lane that gives way to each that it gives way to; broken where no sign says so.
+fn arrows(svg: &mut String, view: &View, map: &Map) {
+    svg.push_str(
+        "<marker id=\"tip\" viewBox=\"0 0 8 8\" refX=\"7\" refY=\"4\" markerWidth=\"8\" \
+         markerHeight=\"8\" orient=\"auto\"><path d=\"M0 0L8 4L0 8Z\" fill=\"#b91c1c\"/></marker>\n",
+    );
+    for regulation in &map.regulations {
+        for (yielding, first) in regulation.pairs() {
+            let [from, to] = [yielding, first].map(|lane| map.lanelets[lane].middle());
+            let path = view.path([from, to]);
+            let dash = if regulation.sign.is_some() {
+                ""
+            } else {
+                " stroke-dasharray=\"5 4\""
+            };
+            let _ = writeln!(
+                svg,
+                "<path d=\"{path}\" stroke=\"#b91c1c\" stroke-width=\"1.3\" marker-end=\"url(#tip)\"{dash}/>"
+            );
+        }
     }
 }
 
@@ -165,14 +224,18 @@ fn conflict_points(svg: &mut String, view: &View, dataset: &Dataset) {
 }
 
 fn legend(svg: &mut String, view: &View, dataset: &Dataset) {
-    let [_, top] = view.size();
-    let (line, mut x) = (top + 0.5 * LEGEND * SCALE, MARGIN * SCALE);
+    let [width, top] = view.size();
+    let (mut line, mut x) = (top + 0.25 * LEGEND * SCALE, MARGIN * SCALE);
     let mut entry = |mark: String, label: &str| {
+        let wide = 50.0 + 8.0 * label.len() as f64;
+        if x + wide > width && x > MARGIN * SCALE {
+            (x, line) = (MARGIN * SCALE, line + 24.0);
+        }
         let _ = writeln!(
             svg,
             "<g transform=\"translate({x:.0} {line:.0})\">{mark}<text x=\"30\" y=\"5\" fill=\"#27272a\">{label}</text></g>"
         );
-        x += 50.0 + 8.0 * label.len() as f64;
+        x += wide;
     };
     for (_, name, colour) in MANOEUVRES {
         entry(
@@ -188,13 +251,20 @@ fn legend(svg: &mut String, view: &View, dataset: &Dataset) {
         "<path d=\"M0 0H22\" stroke=\"#dc2626\" stroke-width=\"3\"/>".to_owned(),
         "stop line",
     );
+    if dataset
+        .map
+        .as_ref()
+        .is_some_and(|map| !map.regulations.is_empty())
+    {
+        let lane =
+            |fill: &str| format!("<rect y=\"-6\" width=\"22\" height=\"12\" fill=\"{fill}\"/>");
+        entry(lane(FIRST), "right of way");
+        entry(lane(YIELDING), "gives way along the arrow");
+        entry(lane(ALL_STOP), "all-way stop");
+    }
     let ten = 10.0 * SCALE;
     entry(
-        format!(
-            "<path d=\"M{:.0} -4v8M{:.0} 0h{ten:.0}m0 -4v8\" stroke=\"#27272a\"/>",
-            30.0 - ten,
-            30.0 - ten
-        ),
+        format!("<path d=\"M0 -4v8M0 0h{ten:.0}m0 -4v8\" stroke=\"#27272a\"/>"),
         "",
     );
     let title = format!(

@@ -60,16 +60,25 @@ pub(crate) fn with(
     settings.with(&table).map_err(wrong)
 }
 
-/// The rows of `cede reproduce` with their settings, changed by `sets`, as in `apg.width=64`.
+/// The rows of `cede reproduce` with their settings for one site or for `several`, changed by `sets`, as in
+/// `apg.width=64`.
 ///
 /// # Errors
 /// A setting is unknown or out of its range, or its row is not among `rows`.
-pub(crate) fn of_rows(rows: &[Algorithm], sets: &[String]) -> Result<Vec<RowSettings>, Failure> {
+pub(crate) fn of_rows(
+    rows: &[Algorithm],
+    several: bool,
+    sets: &[String],
+) -> Result<Vec<RowSettings>, Failure> {
     let mut settled: Vec<RowSettings> = rows
         .iter()
         .map(|row| RowSettings {
             algorithm: *row,
-            settings: row.reproduction(),
+            settings: if several {
+                row.several_sites()
+            } else {
+                row.reproduction()
+            },
         })
         .collect();
     for set in sets {

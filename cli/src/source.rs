@@ -16,9 +16,10 @@ pub(crate) struct Source {
     /// Folder of recordings, or `synthetic`: the embedded generator
     #[arg(long, value_name = "DIR|synthetic")]
     pub(crate) data: String,
-    /// Site of the recordings: `EP0`, `MA`, or the path of a site description [default: EP0]
-    #[arg(long)]
-    site: Option<String>,
+    /// Sites of the recordings, separated by commas: `EP0`, `MA`, the name of a folder, or the path of a
+    /// site description; `all`: every folder of recordings in DIR [default: EP0]
+    #[arg(long, value_delimiter = ',', value_name = "NAME[,NAME…]|all")]
+    site: Vec<String>,
     /// Number of synthetic encounters, at least [default: 1000]
     #[arg(long, value_name = "N", value_parser = at_least_one())]
     encounters: Option<usize>,
@@ -30,21 +31,38 @@ pub(crate) fn at_least_one() -> RangedU64ValueParser<usize> {
 }
 
 impl Source {
-    /// Reads the recordings, or generates encounters from `seed`. The data set may be empty.
+    /// Reads the recordings of every site, or generates encounters from `seed`. There is at least one data
+    /// set, and each site occurs once. A data set may be empty.
     ///
     /// # Errors
     /// An option belongs to the other kind of data, or the recordings cannot be used.
-    pub(crate) fn load(&self, seed: u64) -> Result<Dataset, Failure> {
+    pub(crate) fn load(&self, seed: u64) -> Result<Vec<Dataset>, Failure> {
         if self.is_synthetic() {
-            if self.site.is_some() {
+            if !self.site.is_empty() {
                 return Err(Failure::ignored("--site", "--data synthetic"));
             }
-            return Ok(Dataset::synthetic(self.encounters(), seed));
+            return Ok(vec![Dataset::synthetic(self.encounters(), seed)]);
         }
         if self.encounters.is_some() {
             return Err(self.for_synthetic("--encounters"));
         }
-        Ok(Dataset::load(Path::new(&self.data), self.site())?)
+        let dir = Path::new(&self.data);
+        let names = match self.site.as_slice() {
+            [all] if all == "all" => Dataset::sites(dir)?,
+            [] => vec![SITE.to_owned()],
+            names => names.to_vec(),
+        };
+        let mut sites: Vec<Dataset> = Vec::new();
+        for name in names {
+            let dataset = Dataset::load(dir, name.trim())?;
+            if sites
+                .iter()
+                .all(|known| known.site.name != dataset.site.name)
+            {
+                sites.push(dataset);
+            }
+        }
+        Ok(sites)
     }
 
     /// The same with the seed from `option`, which only synthetic encounters use; without it from `default`.
@@ -56,7 +74,7 @@ impl Source {
         option: &str,
         seed: Option<u64>,
         default: u64,
-    ) -> Result<Dataset, Failure> {
+    ) -> Result<Vec<Dataset>, Failure> {
         if seed.is_some() && !self.is_synthetic() {
             return Err(self.for_synthetic(option));
         }
@@ -68,20 +86,62 @@ impl Source {
         Failure::ignored(option, &format!("the recordings in {}", self.data))
     }
 
+    /// [`Source::load_seeded`] for a command that works on one site.
+    ///
+    /// # Errors
+    /// As [`Source::load_seeded`], or there are several sites.
+    pub(crate) fn load_one_seeded(
+        &self,
+        option: &str,
+        seed: Option<u64>,
+        default: u64,
+    ) -> Result<Dataset, Failure> {
+        one(self.load_seeded(option, seed, default)?)
+    }
+
     /// Whether the encounters are generated.
     pub(crate) fn is_synthetic(&self) -> bool {
         self.data == "synthetic"
     }
 
-    /// Site of the recordings.
-    pub(crate) fn site(&self) -> &str {
-        self.site.as_deref().unwrap_or(SITE)
+    /// Whether several sites are named.
+    pub(crate) fn is_several(&self) -> bool {
+        self.site.len() > 1 || self.site.iter().any(|site| site == "all")
+    }
+
+    /// The sites of the recordings, as they are named on the command line.
+    pub(crate) fn sites(&self) -> String {
+        if self.site.is_empty() {
+            SITE.to_owned()
+        } else {
+            self.site.join(",")
+        }
     }
 
     /// Number of synthetic encounters, at least.
     pub(crate) fn encounters(&self) -> usize {
         self.encounters.unwrap_or(ENCOUNTERS)
     }
+}
+
+/// The only one of `sites`.
+///
+/// # Errors
+/// There are several.
+fn one(sites: Vec<Dataset>) -> Result<Dataset, Failure> {
+    let several =
+        || Failure::Usage("this command works on one site: name it with --site".to_owned());
+    let [site] = <[Dataset; 1]>::try_from(sites).map_err(|_| several())?;
+    Ok(site)
+}
+
+/// The sites' names, as in `EP0,MA`.
+pub(crate) fn names(sites: &[Dataset]) -> String {
+    let names: Vec<_> = sites
+        .iter()
+        .map(|dataset| dataset.site.name.as_str())
+        .collect();
+    names.join(",")
 }
 
 /// Checks that the data set contains encounters.

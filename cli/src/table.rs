@@ -15,9 +15,9 @@ pub(crate) const PAPER: [(&str, &str, usize, f64, f64, usize); 6] = [
     ("paper: SACER-SVO", "test", 17, 0.9412, 0.3078, 0),
 ];
 
-/// The rows of `rows` in blocks of equal split, mode, end and shield; `paper` adds the paper's
-/// rows to the blocks that follow its protocol.
-pub(crate) fn render(rows: &[TableRow], paper: bool) -> String {
+/// The rows of `rows` in blocks of equal site, split, mode, end and shield, with the paper's rows in the
+/// blocks that follow its protocol on its site.
+pub(crate) fn render(rows: &[TableRow]) -> String {
     let mut table = Table::new();
     table
         .load_style(presets::ASCII_MARKDOWN)
@@ -46,7 +46,12 @@ pub(crate) fn render(rows: &[TableRow], paper: bool) -> String {
             table.add_row(cells(row));
         }
         if let Some(first) = block.first() {
-            if paper && (first.mode.as_str(), first.until.as_str()) == ("joint", "conflict") {
+            let protocol = (
+                first.site.as_str(),
+                first.mode.as_str(),
+                first.until.as_str(),
+            );
+            if protocol == ("EP0", "joint", "conflict") {
                 for row in PAPER.iter().filter(|row| row.1 == first.split) {
                     table.add_row(paper_cells(*row));
                 }
@@ -63,7 +68,8 @@ pub(crate) fn compact(rows: &[TableRow]) -> String {
         return String::new();
     };
     let protocol = |row: &&TableRow| {
-        (&row.split, &row.mode, &row.until) == (&first.split, &first.mode, &first.until)
+        (&row.site, &row.split, &row.mode, &row.until)
+            == (&first.site, &first.split, &first.mode, &first.until)
     };
     let same: Vec<&TableRow> = rows.iter().filter(protocol).collect();
     let mut alone: Vec<&TableRow> = same
@@ -109,12 +115,13 @@ pub(crate) fn compact(rows: &[TableRow]) -> String {
     )
 }
 
-fn block_of(row: &TableRow) -> (&str, &str, &str, &str) {
-    (&row.split, &row.mode, &row.until, &row.shield)
+fn block_of(row: &TableRow) -> (&str, &str, &str, &str, &str) {
+    (&row.site, &row.split, &row.mode, &row.until, &row.shield)
 }
 
 fn heading(row: &TableRow) -> String {
     let TableRow {
+        site,
         split,
         mode,
         until,
@@ -123,7 +130,7 @@ fn heading(row: &TableRow) -> String {
         ..
     } = row;
     let encounters = Count(*encounters, "encounter");
-    format!("{split}: {encounters}, {mode} mode, until {until}, shield {shield}")
+    format!("{site}, {split}: {encounters}, {mode} mode, until {until}, shield {shield}")
 }
 
 fn cells(row: &TableRow) -> [String; 12] {

@@ -8,7 +8,8 @@ pub(crate) fn sentence(rows: &[TableRow]) -> Option<String> {
     let first = rows.first()?;
     let same = |row: &&TableRow| {
         row.driver == "cede"
-            && (&row.split, &row.mode, &row.until) == (&first.split, &first.mode, &first.until)
+            && (&row.site, &row.split, &row.mode, &row.until)
+                == (&first.site, &first.split, &first.mode, &first.until)
     };
     let mut cede = rows.iter().filter(same);
     let alone = cede.clone().find(|row| row.shield == "off")?;

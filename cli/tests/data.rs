@@ -55,7 +55,8 @@ fn the_encounters_of_a_generic_file() {
         "Scenario,File_id,StartTime_ms,EndTime_ms,Ego_agent_id,Reactive_agent_id,Agent_with_right_of_way,"
     ));
     // The other is 5 m from (−2, −4) after 3.7 s, the left-turner another 3.7 s later.
-    let expected = "X,003,0,3700,1,2,2,2,37,3.7,crossing,left,straight,-2.000,";
+    let expected =
+        "X,003,0,3700,1,2,2,2,37,3.7,crossing,left,straight,unknown,unknown,unknown,-2.000,";
     assert!(row.starts_with(expected), "{row}");
     let replay = [
         "replay",

@@ -107,6 +107,83 @@ fn rows(parquet: &Path) -> usize {
     reader.get_row_iter(None).unwrap().count()
 }
 
+/// The folder of two synthetic sites, and their names.
+fn two_sites(folder: &Path) -> Vec<String> {
+    let out = folder.to_str().unwrap();
+    let synthesize = ["data", "synthesize", "--encounters", "150", "--out", out];
+    cede(&synthesize).assert().success();
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            names.push(path.file_name().unwrap().to_str().unwrap().to_owned());
+        }
+    }
+    names.sort();
+    for name in names.split_off(2) {
+        std::fs::remove_dir_all(folder.join(name)).unwrap();
+    }
+    names
+}
+
+#[test]
+fn several_sites_are_judged_one_after_the_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let names = two_sites(folder.path());
+    let data = folder.path().to_str().unwrap();
+    let judge = |sites: &str| {
+        let arguments = ["--driver", "nearer-first", "--split", "all", "--json"];
+        let mut command = cede(&["evaluate", "--data", data, "--site", sites]);
+        let object: Value = serde_json::from_str(&stdout(command.args(arguments))).unwrap();
+        object
+    };
+    let both = judge(&names.join(","));
+    assert_eq!(both["site"], names.join(",").as_str());
+    let rows = both["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 2);
+    for (row, name) in rows.iter().zip(&names) {
+        assert_eq!(row["site"], name.as_str());
+        assert_eq!(row, &judge(name)["rows"][0]);
+    }
+    // Each site once, and all folders of recordings.
+    let [first, second] = names.as_slice() else {
+        unreachable!()
+    };
+    assert_eq!(
+        judge(&format!("{first},{second},{first}"))["rows"],
+        both["rows"]
+    );
+    assert_eq!(judge("all"), both);
+    let mut missing = cede(&["evaluate", "--data", data, "--site", "Nowhere"]);
+    assert!(stderr(&mut missing, 3).contains("no recorded tracks of site Nowhere"));
+    let report = [
+        "evaluate",
+        "--data",
+        data,
+        "--site",
+        "all",
+        "--report",
+        "page.html",
+    ];
+    assert!(stderr(&mut cede(&report), 2).contains("a report shows one site"));
+    let inspect = ["data", "inspect", "--data", data, "--site", "all"];
+    assert!(stderr(&mut cede(&inspect), 2).contains("one site"));
+}
+
+#[test]
+fn seven_folds_judge_each_encounter_once() {
+    let folds = [
+        "--driver",
+        "logistic",
+        "--split",
+        "seven-fold,all",
+        "--json",
+    ];
+    let object: Value = serde_json::from_str(&stdout(&mut evaluate(&folds))).unwrap();
+    assert_eq!(object["rows"][0]["split"], "seven-fold");
+    assert_eq!(object["rows"][0]["n"], object["rows"][1]["n"]);
+}
+
 #[test]
 fn usage_errors_name_what_there_is() {
     let message = stderr(&mut evaluate(&["--driver", "fast"]), 2);

@@ -307,6 +307,7 @@ fn vehicle_state(vehicle: &Vehicle, path: &Path, conflict: f32) -> VehicleState 
         footprint: path.footprint(),
         leader: None,
         crosser: None,
+        control: path.control(),
     }
 }
 

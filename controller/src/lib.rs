@@ -105,8 +105,9 @@ pub use fault::{Fault, Field, InputFault, Subject};
 pub use geometry::{Footprint, Point, Pose, UnitVector, Vector};
 pub use instant::Instant;
 pub use junction::{
-    CONFLICT_RADIUS, Class, ConflictKind, Junction, JunctionBuilder, JunctionError, MAX_OTHERS,
-    Path, PathId, Polyline, RightOfWay, Route, RouteConflict, RouteError, Span, Way, Zone,
+    CONFLICT_RADIUS, Class, ConflictKind, Control, Junction, JunctionBuilder, JunctionError,
+    MAX_OTHERS, Path, PathId, Polyline, RightOfWay, Route, RouteConflict, RouteError, Span, Way,
+    Zone,
 };
 pub use observation::{Candidate, MAX_CANDIDATES, Observation, Track, Vehicle};
 pub use policy::{

@@ -24,7 +24,7 @@ fn all_files(criterion: &mut Criterion) {
             bencher.iter(|| {
                 let recordings = dataset.recordings.iter();
                 recordings
-                    .map(|r| black_box(extract(&dataset.site, r)).len())
+                    .map(|r| black_box(extract(&dataset.site, dataset.map.as_ref(), r)).len())
                     .sum::<usize>()
             });
         });

@@ -36,6 +36,11 @@ pub(crate) fn first_crossing(a: &[Point], b: &[Point]) -> Option<Point> {
     })
 }
 
+/// Whether the segments `a`–`b` and `c`–`d` cross properly.
+pub(crate) fn crosses(a: Point, b: Point, c: Point, d: Point) -> bool {
+    crossing(a, b, c, d).is_some()
+}
+
 /// The share of the way from `a` to `b` at which the segment `c`–`d` crosses properly.
 fn crossing(a: Point, b: Point, c: Point, d: Point) -> Option<f64> {
     let side = |from: Point, to: Point, p: Point| {

@@ -1,5 +1,6 @@
 //! An encounter: two vehicles whose routes conflict, as recorded, and the traffic around them.
 
+use crate::rights::{Entry, Rights};
 use cede_controller::{ConflictKind, Footprint, Point, Route};
 
 /// A route in simulation; recorded tracks are simplified to fit (tolerance 1 cm).
@@ -64,6 +65,8 @@ pub struct Participant {
     pub track: u32,
     /// What it does at the intersection.
     pub manoeuvre: Manoeuvre,
+    /// What it finds where it enters the intersection; unknown for bystanders.
+    pub entry: Entry,
     /// Its path.
     pub route: SimRoute,
     /// Its recorded size.
@@ -100,6 +103,8 @@ pub struct Encounter {
     pub conflict_point: Point,
     /// Who reached the conflict point first.
     pub first: Role,
+    /// Who goes first by the rules of the road.
+    pub rights: Rights,
     /// Time between the two arrivals at the conflict point in seconds.
     pub pet: f32,
     /// The two judged vehicles, [`Role::Left`] first, then the bystanders.

@@ -67,6 +67,9 @@ pub enum Problem {
         /// The site that was asked for.
         site: String,
     },
+    /// The folder holds no folder of recordings.
+    #[error("no folder with recorded tracks here")]
+    NoSites,
     /// A file without rows.
     #[error("no rows")]
     Empty,
@@ -156,6 +159,9 @@ impl Problem {
             Self::NoRecordings { .. } => {
                 "name the folder that holds the site's vehicle_tracks_NNN.csv, or its parent, and the site with --site"
             }
+            Self::NoSites => {
+                "name the folder that holds the sites' folders, or one site with --site"
+            }
             Self::Empty => "restore the file from its source",
             Self::MissingColumn { mend, .. } => mend,
             Self::Pedestrians => {
@@ -183,7 +189,7 @@ impl Problem {
             }
             Self::Site(_) => "compare with data/src/sites/EP0.toml",
             Self::Map(_) => {
-                "restore the map from its source, or remove it: it serves for drawing only"
+                "restore the map from its source, or remove it: it serves for drawing and rights of way, nothing else"
             }
         }
     }

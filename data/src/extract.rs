@@ -8,11 +8,14 @@
 //! the earlier arrival; it counts if that takes a step at least.
 
 use super::crossing::{Point, first_crossing};
+use super::lanelet::{Map, Trace};
 use super::motion::motion;
+use super::rights::{Entry, Party, Rights};
 use super::site::Site;
 use super::tracks::{Recording, STEP_MS, Track};
 use crate::encounter::{Encounter, EncounterId, Participant, Role, Sample, SimRoute};
 use cede_controller::{CONFLICT_RADIUS, ConflictKind, Footprint};
+use std::cell::OnceCell;
 
 /// A vehicle has arrived when it is closer (m) to the conflict point than this.
 pub const NEAR: f64 = CONFLICT_RADIUS as f64;
@@ -21,12 +24,13 @@ pub const NEAR: f64 = CONFLICT_RADIUS as f64;
 ///
 /// Cost: some milliseconds for each minute of traffic.
 #[must_use]
-pub fn extract(site: &Site, recording: &Recording) -> Vec<Encounter> {
+pub fn extract(site: &Site, map: Option<&Map>, recording: &Recording) -> Vec<Encounter> {
     let polylines: Vec<Vec<Point>> = recording
         .tracks
         .iter()
         .map(|track| track.states.iter().map(|s| s.position()).collect())
         .collect();
+    let traces: Vec<OnceCell<Trace>> = vec![OnceCell::new(); recording.tracks.len()];
     let mut encounters = Vec::new();
     for (i, left) in recording.tracks.iter().enumerate() {
         for (j, other) in recording.tracks.iter().enumerate() {
@@ -36,7 +40,17 @@ pub fn extract(site: &Site, recording: &Recording) -> Vec<Encounter> {
             let pair = TrackPair { left, other, kind };
             let paths = [polylines[i].as_slice(), polylines[j].as_slice()];
             let conflict = pair.conflict(paths);
-            encounters.extend(conflict.and_then(|m| pair.encounter(site, recording, &m)));
+            let Some(mut encounter) = conflict
+                .as_ref()
+                .and_then(|m| pair.encounter(site, recording, m))
+            else {
+                continue;
+            };
+            if let (Some(map), Some(met)) = (map, &conflict) {
+                let trace = |i: usize| traces[i].get_or_init(|| map.trace(&recording.tracks[i]));
+                pair.read_rights(map, met, [trace(i), trace(j)], &mut encounter);
+            }
+            encounters.push(encounter);
         }
     }
     encounters
@@ -86,6 +100,35 @@ impl TrackPair<'_> {
         })
     }
 
+    /// Writes to `encounter` what `map` says about who goes first.
+    fn read_rights(
+        &self,
+        map: &Map,
+        met: &ConflictTimes,
+        traces: [&Trace; 2],
+        encounter: &mut Encounter,
+    ) {
+        let tracks = [(self.left, met.left), (self.other, met.other)];
+        let party = |i: usize| Party {
+            track: tracks[i].0,
+            trace: traces[i],
+            manoeuvre: encounter.participants[i].manoeuvre,
+            arrival: tracks[i].1.index,
+        };
+        let parties = [party(0), party(1)];
+        let duties = parties.map(|party| map.duty(party));
+        encounter.rights = map.rights(parties, [&duties[0], &duties[1]]);
+        for (i, duty) in duties.iter().enumerate() {
+            let participant = &mut encounter.participants[i];
+            let line = |index| arc_length(tracks[i].0, participant, met.start_ms, index);
+            participant.entry = Entry {
+                control: duty.control,
+                line: duty.line.and_then(line),
+                limit: map.limit(traces[i]).map(|limit| limit as f32),
+            };
+        }
+    }
+
     fn encounter(&self, site: &Site, file: &Recording, met: &ConflictTimes) -> Option<Encounter> {
         let left = judged(site, self.left, met.left, met.start_ms)?;
         let other = judged(site, self.other, met.other, met.start_ms)?;
@@ -116,10 +159,27 @@ impl TrackPair<'_> {
             } else {
                 Role::Other
             },
+            rights: Rights::default(),
             pet: met.left.time_ms.abs_diff(met.other.time_ms) as f32 * 1e-3,
             participants,
         })
     }
+}
+
+/// Arc length (m) on the route of `participant` at which `track` crosses the line before state `index`.
+fn arc_length(
+    track: &Track,
+    participant: &Participant,
+    start_ms: u64,
+    index: usize,
+) -> Option<f32> {
+    let skipped = usize::try_from(start_ms.saturating_sub(track.first_ms) / STEP_MS).ok()?;
+    if let Some(place) = index.checked_sub(skipped) {
+        return participant.record.get(place).map(|sample| sample.s);
+    }
+    let before = track.states.get(index..=skipped)?.windows(2);
+    let way = before.map(|w| (w[1].x - w[0].x).hypot(w[1].y - w[0].y));
+    Some(-way.sum::<f64>() as f32)
 }
 
 fn arrival(track: &Track, path: &[Point], point: Point) -> Option<Arrival> {
@@ -163,6 +223,7 @@ fn bystander(site: &Site, track: &Track, start_ms: u64) -> Option<Participant> {
     Some(Participant {
         track: track.id,
         manoeuvre: site.manoeuvre(track),
+        entry: Entry::default(),
         route,
         footprint: Footprint {
             length: track.length as f32,

@@ -57,6 +57,28 @@ pub(crate) fn find(dir: &Path, site: &Site) -> Result<Found, DataError> {
     Err(DataError::new(dir, Problem::NoRecordings { site }))
 }
 
+/// The names of the folders with recordings in `dir` or in its `recorded_trackfiles`, in alphabetical order.
+pub(crate) fn sites(dir: &Path) -> Result<Vec<String>, DataError> {
+    let inner = dir.join("recorded_trackfiles");
+    let dir = if inner.is_dir() { &inner } else { dir };
+    let unreadable = |error| DataError::new(dir, Problem::Unreadable(error));
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(dir).map_err(unreadable)? {
+        let path = entry.map_err(unreadable)?.path();
+        if path.is_dir() && !sort(csv_files(&path)?).recordings.is_empty() {
+            names.extend(
+                path.file_name()
+                    .map(|name| name.to_string_lossy().into_owned()),
+            );
+        }
+    }
+    if names.is_empty() {
+        return Err(DataError::new(dir, Problem::NoSites));
+    }
+    names.sort();
+    Ok(names)
+}
+
 /// The folder in `dir` that is called like the site, or ends in `_` and the site's name.
 fn folder_of(dir: &Path, site: &Site) -> Option<PathBuf> {
     let exact = dir.join(&site.folder);

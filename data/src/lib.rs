@@ -12,6 +12,7 @@ pub mod lanelet;
 mod motion;
 pub mod output;
 pub mod projection;
+mod rights;
 mod site;
 mod summary;
 pub mod synthetic;
@@ -21,8 +22,9 @@ mod tracks;
 pub use encounter::{Encounter, EncounterId, Manoeuvre, Participant, Role, Sample, SimRoute};
 pub use error::{DataError, Problem};
 pub use extract::{NEAR, extract};
+pub use rights::{Entry, Rights, Rule};
 pub use site::{Files, Site};
-pub use summary::{Distribution, FileSummary, REST, Summary};
+pub use summary::{Distribution, FileSummary, REST, RightsSummary, Summary};
 pub use tracks::{RawState, Recording, STEP_MS, Track};
 
 use lanelet::Map;
@@ -57,14 +59,12 @@ pub enum Split {
     All,
 }
 
-/// One round of leave-one-file-out: learn from `train`, judge on `held_out`.
+/// One round of a cross-validation by file: learn from `train`, judge on `held_out`.
 #[derive(Clone, Debug)]
 pub struct Fold<'d> {
-    /// The file that is left out.
-    pub file: u16,
-    /// The encounters of all other files.
+    /// The encounters of the files that are kept.
     pub train: Vec<&'d Encounter>,
-    /// The encounters of `file`.
+    /// The encounters of the files that are left out; none if there are fewer files than rounds.
     pub held_out: Vec<&'d Encounter>,
 }
 
@@ -91,24 +91,32 @@ impl Dataset {
             .collect::<Result<Vec<_>, _>>()?;
         let map = found.map.as_deref().map(lanelet::read).transpose()?;
         Ok(Self {
-            map,
             passed_over: found.passed_over,
-            ..Self::new(site, recordings)
+            ..Self::new(site, recordings, map)
         })
     }
 
-    /// The encounters of `recordings` at `site`.
+    /// The sites whose folders are in `dir`, or in its `recorded_trackfiles`, by their folders' names in
+    /// alphabetical order: what [`Dataset::load`] takes.
+    ///
+    /// # Errors
+    /// `dir` cannot be read, or there is no folder with recordings in it.
+    pub fn sites(dir: &Path) -> Result<Vec<String>, DataError> {
+        files::sites(dir)
+    }
+
+    /// The encounters of `recordings` at `site`, with the rights that its `map` gives them.
     #[must_use]
-    pub fn new(site: Site, recordings: Vec<Recording>) -> Self {
+    pub fn new(site: Site, recordings: Vec<Recording>, map: Option<Map>) -> Self {
         let encounters = recordings
             .par_iter()
-            .flat_map_iter(|recording| extract(&site, recording))
+            .flat_map_iter(|recording| extract(&site, map.as_ref(), recording))
             .collect();
         Self {
             site,
             recordings,
             encounters,
-            map: None,
+            map,
             passed_over: Vec::new(),
         }
     }
@@ -119,7 +127,7 @@ impl Dataset {
     pub fn every_pair(&self) -> Self {
         let mut site = self.site.clone();
         site.every_pair = true;
-        Self::new(site, self.recordings.clone())
+        Self::new(site, self.recordings.clone(), self.map.clone())
     }
 
     /// The encounters of `split`, in order.
@@ -138,19 +146,25 @@ impl Dataset {
         })
     }
 
-    /// Leave-one-file-out: a fold for every file that has encounters.
+    /// The numbers of the files that have encounters, in order.
     #[must_use]
-    pub fn folds(&self) -> Vec<Fold<'_>> {
+    pub fn files(&self) -> Vec<u16> {
         let mut files: Vec<u16> = self.encounters.iter().map(|e| e.id.file).collect();
         files.dedup();
-        let fold = |file| {
-            let (held_out, train) = self.encounters.iter().partition(|e| e.id.file == file);
-            Fold {
-                file,
-                train,
-                held_out,
-            }
+        files
+    }
+
+    /// Cross-validation by file in this number of `rounds`: of the files that have encounters, round i leaves
+    /// out the i-th and every `rounds`-th after it. With as many rounds as files it is leave-one-file-out.
+    #[must_use]
+    pub fn folds(&self, rounds: usize) -> Vec<Fold<'_>> {
+        let files = self.files();
+        let fold = |round: usize| {
+            let out: Vec<u16> = files.iter().copied().skip(round).step_by(rounds).collect();
+            let of_those = |e: &&Encounter| out.contains(&e.id.file);
+            let (held_out, train) = self.encounters.iter().partition(of_those);
+            Fold { train, held_out }
         };
-        files.into_iter().map(fold).collect()
+        (0..rounds).map(fold).collect()
     }
 }

@@ -117,6 +117,7 @@ impl Arm {
 impl Site {
     /// The site called `name`: a path of a scene description (`….toml`), one that
     /// comes with the program (`EP0`), or else any name, read by the rule on headings.
+    /// A folder of INTERACTION (`DR_USA_Intersection_EP0`) is called by the end of its name.
     ///
     /// # Errors
     /// When the file cannot be read or is not a scene description.
@@ -130,9 +131,13 @@ impl Site {
                 .map_err(|error| DataError::new(path, Problem::Unreadable(error)))?;
             return Self::parse(path, &text);
         }
-        match EMBEDDED.iter().find(|(known, _)| *known == name) {
+        let short = short(name);
+        match EMBEDDED.iter().find(|(known, _)| *known == short) {
             Some((_, text)) => Self::parse(path, text),
-            None => Ok(Self::by_headings(name)),
+            None => Ok(Self {
+                name: short.to_owned(),
+                ..Self::by_headings(name)
+            }),
         }
     }
 
@@ -207,6 +212,14 @@ impl Site {
             from: arm(track.first())?,
             to: arm(track.last())?,
         })
+    }
+}
+
+/// What a site is called whose folder has the name `folder`: the end of INTERACTION's names, else all of it.
+fn short(folder: &str) -> &str {
+    match folder.rsplit_once('_') {
+        Some((beginning, end)) if beginning.starts_with("DR_") && !end.is_empty() => end,
+        _ => folder,
     }
 }
 

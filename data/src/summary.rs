@@ -2,6 +2,7 @@
 
 use super::{Dataset, STEP_MS};
 use crate::encounter::{Encounter, Manoeuvre, Participant, Role, Sample};
+use crate::rights::Rule;
 use cede_controller::ConflictKind;
 use cede_controller::kinematics::{MAX_ACCELERATION, STEP};
 use serde::Serialize;
@@ -51,8 +52,29 @@ pub struct Summary {
     pub acceleration: Distribution,
     /// Share of those within ±3 m/s².
     pub acceleration_within_bounds: f64,
+    /// Who goes first by the rules of the road, and how often that vehicle did; the most frequent first.
+    pub rights: Vec<RightsSummary>,
+    /// Speed limit of the judged vehicles' ways through the map, m/s; of those that have one.
+    pub limit: Distribution,
     /// How many of all recorded vehicles do what.
     pub manoeuvres: BTreeMap<&'static str, usize>,
+}
+
+/// The encounters in which the same rule says the same.
+#[derive(Clone, Debug, Serialize)]
+pub struct RightsSummary {
+    /// What obliges the left-turner to give way.
+    pub left: &'static str,
+    /// What obliges the other.
+    pub other: &'static str,
+    /// The rule by which it is known who goes first.
+    pub rule: Rule,
+    /// Who goes first by it, if it decides: `left` or `other`.
+    pub first: Option<&'static str>,
+    /// Number of such encounters.
+    pub encounters: usize,
+    /// In how many of them the left-turner went first.
+    pub left_first: usize,
 }
 
 /// A recording file in numbers.
@@ -149,9 +171,49 @@ impl Summary {
             other_distance_m: distribution(&|e| distance(e, Role::Other)),
             acceleration_within_bounds: within as f64 / accelerations.len().max(1) as f64,
             acceleration: Distribution::of(accelerations),
+            rights: rights(all),
+            limit: Distribution::of(limits(all)),
             manoeuvres: manoeuvres(dataset),
         }
     }
+}
+
+fn limits(encounters: &[Encounter]) -> impl Iterator<Item = f64> {
+    let judged = encounters
+        .iter()
+        .flat_map(|e| Role::BOTH.map(|role| e.judged(role)));
+    judged.filter_map(|vehicle| vehicle.entry.limit.map(f64::from))
+}
+
+fn rights(encounters: &[Encounter]) -> Vec<RightsSummary> {
+    let mut all: Vec<RightsSummary> = Vec::new();
+    for encounter in encounters {
+        let [left, other] = Role::BOTH.map(|role| encounter.judged(role).entry.control.name());
+        let rule = encounter.rights.rule;
+        let first = encounter.rights.first.map(|role| match role {
+            Role::Left => "left",
+            Role::Other => "other",
+        });
+        let same = |known: &&mut RightsSummary| {
+            (known.left, known.other, known.rule, known.first) == (left, other, rule, first)
+        };
+        let of_left = usize::from(encounter.first == Role::Left);
+        if let Some(known) = all.iter_mut().find(same) {
+            known.encounters += 1;
+            known.left_first += of_left;
+        } else {
+            all.push(RightsSummary {
+                left,
+                other,
+                rule,
+                first,
+                encounters: 1,
+                left_first: of_left,
+            });
+        }
+    }
+    all.sort_by_key(|summary| std::cmp::Reverse(summary.encounters));
+    all
 }
 
 fn first(vehicle: &Participant) -> Sample {

@@ -283,19 +283,34 @@ fn maps() {
     let map = |content| message(lanelet::read, "X.osm", content);
     assert_snapshot!(map("<osm><node id='1'"), @r"
     X.osm:1: not a Lanelet2 map: the root node was opened but never closed
-    restore the map from its source, or remove it: it serves for drawing only
+    restore the map from its source, or remove it: it serves for drawing and rights of way, nothing else
     ");
     assert_snapshot!(map("<osm>\n<node id='1' lat='0.1' lon='east'/>\n</osm>"), @r"
     X.osm:2: not a Lanelet2 map: `east` is not a number of degrees
-    restore the map from its source, or remove it: it serves for drawing only
+    restore the map from its source, or remove it: it serves for drawing and rights of way, nothing else
     ");
     assert_snapshot!(map("<osm>\n<way id='2'><nd ref='1'/></way>\n</osm>"), @r"
     X.osm:2: not a Lanelet2 map: there is no node 1
-    restore the map from its source, or remove it: it serves for drawing only
+    restore the map from its source, or remove it: it serves for drawing and rights of way, nothing else
     ");
     let lanelet = "<osm>\n<relation id='3'><tag k='type' v='lanelet'/></relation>\n</osm>";
     assert_snapshot!(map(lanelet), @r"
     X.osm:2: not a Lanelet2 map: a lanelet without a left bound
-    restore the map from its source, or remove it: it serves for drawing only
+    restore the map from its source, or remove it: it serves for drawing and rights of way, nothing else
+    ");
+    let regulation = |member: &str| {
+        format!(
+            "<osm>\n<relation id='5'>\n<member {member}/>\n<tag k='type' v='regulatory_element'/>\n<tag k='subtype' v='right_of_way'/></relation>\n</osm>"
+        )
+    };
+    let lane = regulation("type='relation' ref='7' role='yield'");
+    assert_snapshot!(map(&lane), @r"
+    X.osm:3: not a Lanelet2 map: there is no lanelet 7
+    restore the map from its source, or remove it: it serves for drawing and rights of way, nothing else
+    ");
+    let line = regulation("type='way' ref='8' role='ref_line'");
+    assert_snapshot!(map(&line), @r"
+    X.osm:3: not a Lanelet2 map: there is no way 8
+    restore the map from its source, or remove it: it serves for drawing and rights of way, nothing else
     ");
 }

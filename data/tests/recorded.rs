@@ -1,9 +1,9 @@
 //! The recorded encounters of INTERACTION's EP0 and MA; skipped where the recordings are absent.
 
-use cede_controller::ConflictKind;
 use cede_controller::kinematics::{State, advance, clamp_acceleration};
-use cede_data::lanelet::LineKind;
-use cede_data::{Dataset, Encounter, REST, Role, Split};
+use cede_controller::{ConflictKind, Control};
+use cede_data::lanelet::{Lanelet, LineKind};
+use cede_data::{Dataset, Encounter, REST, Role, Rule, Split};
 use cede_tests::interaction;
 
 fn load(site: &str) -> Option<Dataset> {
@@ -12,7 +12,7 @@ fn load(site: &str) -> Option<Dataset> {
 
 fn encounters_per_file(dataset: &Dataset) -> Vec<usize> {
     dataset
-        .folds()
+        .folds(dataset.files().len())
         .iter()
         .map(|fold| fold.held_out.len())
         .collect()
@@ -119,7 +119,8 @@ fn the_map_lies_under_the_tracks() {
             .flat_map(|r| &r.tracks)
             .flat_map(|t| &t.states);
         let states: Vec<_> = states.step_by(997).collect();
-        let on_lane = |p: [f64; 2]| map.lanes.iter().any(|lane| inside(lane, p));
+        let lanes: Vec<_> = map.lanelets.iter().map(Lanelet::outline).collect();
+        let on_lane = |p: [f64; 2]| lanes.iter().any(|lane| inside(lane, p));
         let in_lane = states.iter().filter(|s| on_lane([s.x, s.y])).count();
         let share = in_lane as f64 / states.len() as f64;
         println!(
@@ -128,6 +129,50 @@ fn the_map_lies_under_the_tracks() {
             states.len()
         );
         assert!(share > 0.95, "{site}: {share}");
+    }
+}
+
+/// What a look at each site's map and its signs says.
+#[test]
+fn the_maps_say_who_gives_way() {
+    for site in ["EP0", "MA", "GL", "FT", "SR"] {
+        let Some(dataset) = load(site) else { return };
+        let count = |holds: &dyn Fn(&Encounter) -> bool| {
+            let all = &dataset.encounters;
+            let n = all.iter().filter(|e| holds(e)).count();
+            n as f64 / all.len() as f64
+        };
+        let rule = |rule: Rule| count(&|e| e.rights.rule == rule);
+        let control = |role, control: Control| count(&|e| e.judged(role).entry.control == control);
+        assert!(rule(Rule::Unknown) < 0.01, "{site}");
+        match site {
+            "EP0" => assert_eq!(rule(Rule::AllWayStop), 1.0),
+            // Some come from a car park.
+            "MA" => assert!(rule(Rule::AllWayStop) > 0.98),
+            // Left-turners of the major road give way to oncoming traffic; on the minor roads both stop.
+            "GL" => {
+                let both_major = |e: &Encounter| {
+                    Role::BOTH
+                        .iter()
+                        .all(|&role| e.judged(role).entry.control == Control::Free)
+                };
+                assert!(count(&|e| both_major(e) && e.rights.settled() == Some(Role::Other)) > 0.7);
+                assert!(control(Role::Left, Control::Stop) > 0.2);
+            }
+            // Everybody who enters a roundabout has a sign.
+            _ => assert!(control(Role::Left, Control::Free) < 0.1, "{site}"),
+        }
+        let limit = |e: &Encounter| e.judged(Role::Left).entry.limit;
+        let mph = [
+            ("EP0", 15.0),
+            ("MA", 40.0),
+            ("GL", 40.0),
+            ("FT", 25.0),
+            ("SR", 25.0),
+        ];
+        let expected = mph.iter().find(|(name, _)| *name == site).unwrap().1 * 0.447_04;
+        let told = count(&|e| limit(e).is_some_and(|v| (v - expected as f32).abs() < 1e-3));
+        assert!(told > 0.99, "{site}: {told}");
     }
 }
 

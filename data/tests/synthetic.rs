@@ -16,7 +16,7 @@ fn written_recordings_are_read_back_to_the_same_encounters() {
         let data = Dataset::load(folder.path(), &description.to_string_lossy()).unwrap();
         assert_eq!(data.encounters.len(), site.encounters);
         let map = data.map.as_ref().expect("a map is beside the recordings");
-        assert!(map.lanes.len() >= 6 && map.lines.len() >= 6);
+        assert!(map.lanelets.len() >= 6 && map.lines.len() >= 6);
         test += data.split(Split::Test).count();
         read.extend(data.encounters);
     }

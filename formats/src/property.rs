@@ -3,7 +3,7 @@
 use cede_controller::geometry::unit;
 use cede_controller::policy::svo;
 use cede_controller::{
-    ConflictKind, Elementary, Footprint, Pair, Part, Point, Pose, RightOfWay, VehicleState,
+    ConflictKind, Control, Elementary, Footprint, Pair, Part, Point, Pose, RightOfWay, VehicleState,
 };
 use serde::{Deserialize, Serialize};
 
@@ -43,6 +43,7 @@ impl Setting {
             footprint: Footprint::PAPER,
             leader: None,
             crosser: None,
+            control: Control::Unknown,
         };
         Pair {
             ego: vehicle_state(d, v, self.turns[0]),

@@ -65,6 +65,7 @@ pub(crate) fn evaluate(
     named("mode", mode, &[("joint", ()), ("ego", ())])?;
     let label = Label {
         driver: name,
+        site: &dataset.0.site.name,
         split: selection.name(),
         mode,
         until,

@@ -3,7 +3,7 @@
 use cede_controller::kinematics::State;
 use cede_controller::policy::features::normalised;
 use cede_controller::{
-    ConflictKind, FeatureSet, Footprint, Pair, Part, Pose, RightOfWay, UnitVector, VehicleState,
+    ConflictKind, Control, FeatureSet, Footprint, Pair, Part, Pose, RightOfWay, UnitVector, VehicleState,
 };
 use cede_data::Encounter;
 use cede_sim::ObservationModel;
@@ -54,6 +54,7 @@ impl Look {
             footprint: Footprint::PAPER,
             leader: None,
             crosser: None,
+            control: Control::Unknown,
         };
         Pair {
             ego: vehicle(ego),

@@ -14,6 +14,7 @@ mod nearer_first;
 mod policy_alone;
 mod replay;
 mod right_of_way;
+mod rule_of_the_road;
 mod shielded;
 
 pub use baseline::{Baseline, FitError, UnknownBaseline};
@@ -25,6 +26,7 @@ pub use logistic::Logistic;
 pub use nearer_first::NearerFirst;
 pub use policy_alone::PolicyAlone;
 pub use replay::Replay;
+pub use rule_of_the_road::RuleOfTheRoad;
 pub use shielded::Shielded;
 
 use crate::meeting::Meeting;

@@ -184,6 +184,7 @@ mod tests {
     fn label(driver: &str) -> Label<'_> {
         Label {
             driver,
+            site: "X",
             split: "all",
             mode: "joint",
             until: "cleared",

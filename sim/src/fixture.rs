@@ -5,6 +5,7 @@ use cede_controller::{ConflictKind, Footprint, Point, Vector};
 use cede_data::encounter::{
     Encounter, EncounterId, Manoeuvre, Participant, Role, Sample, SimRoute,
 };
+use cede_data::{Entry, Rights};
 
 /// The left-turner drives east, the other north; their routes cross at the origin, at right angles.
 /// Each starts `distance` m before its conflict point (5 m before the crossing) and is recorded at
@@ -30,6 +31,7 @@ pub(crate) fn crossing(left: [f32; 2], other: [f32; 2]) -> Encounter {
         } else {
             Role::Other
         },
+        rights: Rights::default(),
         pet: (left - other).abs() * STEP,
         participants: vec![east, north],
     }
@@ -54,6 +56,7 @@ fn participant(
     Participant {
         track,
         manoeuvre,
+        entry: Entry::default(),
         route,
         footprint: Footprint::PAPER,
         conflict_s,

@@ -3,8 +3,8 @@
 use cede_controller::junction::MAX_PATH_LENGTH;
 use cede_controller::kinematics::State;
 use cede_controller::{
-    Class, Footprint, Instant, Junction, JunctionError, PathId, Route, RouteConflict, RouteError,
-    Vehicle,
+    Class, Footprint, Instant, Junction, JunctionBuilder, JunctionError, PathId, Route,
+    RouteConflict, RouteError, Vehicle,
 };
 use cede_data::encounter::{Encounter, Participant, Role, SimRoute};
 use thiserror::Error;
@@ -85,10 +85,16 @@ fn judged(
         let more = (reach(vehicle) - vehicle.route.length()).max(0.0);
         vehicle.route.extended(0.0, more)
     });
-    Ok(crossroads([
-        (&left?, Footprint::PAPER),
-        (&other?, Footprint::PAPER),
-    ])?)
+    let mut builder = builder([(&left?, Footprint::PAPER), (&other?, Footprint::PAPER)])?;
+    for role in Role::BOTH {
+        let control = encounter.judged(role).entry.control;
+        builder.control(path(role as usize), control)?;
+    }
+    if let Some(first) = encounter.rights.settled() {
+        let [first, second] = [first as usize, 1 - first as usize].map(path);
+        builder.right_of_way(first, second)?;
+    }
+    Ok(builder.build()?)
 }
 
 /// The junction of two routes that are followed exactly.
@@ -98,12 +104,18 @@ fn judged(
 pub fn crossroads<const Q: usize>(
     routes: [(&Route<Q>, Footprint); 2],
 ) -> Result<Crossroads, JunctionError> {
+    builder(routes)?.build()
+}
+
+fn builder<const Q: usize>(
+    routes: [(&Route<Q>, Footprint); 2],
+) -> Result<JunctionBuilder<2, POINTS, 2>, JunctionError> {
     let mut builder = Crossroads::builder();
     builder.tolerance(0.0);
     for (route, footprint) in routes {
         builder.path(route, Class::Car, footprint)?;
     }
-    builder.build()
+    Ok(builder)
 }
 
 /// How path `index` of `junction`, 0 or 1, meets the other one.

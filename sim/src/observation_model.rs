@@ -7,12 +7,32 @@ use cede_controller::{ConflictKind, Footprint, NearbyVehicle, Pair, TrafficConte
 use cede_controller::{Part, RightOfWay, VehicleState};
 use cede_data::encounter::Encounter;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4};
+use core::ops::Range;
+
+/// Who may go first, as judged vehicle `ego` sees it; unsettled at an all-way stop.
+#[must_use]
+pub fn right_of_way(encounter: &Encounter, ego: usize) -> RightOfWay {
+    match encounter.rights.settled() {
+        Some(first) if first as usize == ego => RightOfWay::Ego,
+        Some(_) => RightOfWay::Other,
+        None => RightOfWay::Unsettled,
+    }
+}
 
 /// The bystanders of an encounter whose routes meet that of one of its judged vehicles.
 #[derive(Clone, Debug)]
 pub struct Bystanders {
-    /// How the route of the judged vehicle meets that of the participant with this number.
-    conflicts: Vec<(RouteConflict, usize)>,
+    meetings: Vec<Bystander>,
+}
+
+/// A bystander whose route meets that of the judged vehicle.
+#[derive(Clone, Debug)]
+struct Bystander {
+    /// Steps during which it is there: most are not, most of the time, and nothing else of those is read.
+    there: Range<usize>,
+    /// Its number among the participants.
+    index: usize,
+    conflict: RouteConflict,
 }
 
 impl Bystanders {
@@ -32,10 +52,15 @@ impl Bystanders {
             ];
             let conflict = conflict(&crossroads(routes).ok()?, 0).copied()?;
             conflict.zones().next()?;
-            Some((conflict, index))
+            let appears = other.appears as usize;
+            Some(Bystander {
+                there: appears..appears + other.record.len(),
+                index,
+                conflict,
+            })
         };
         Self {
-            conflicts: (2..encounter.participants.len())
+            meetings: (2..encounter.participants.len())
                 .filter_map(conflict)
                 .collect(),
         }
@@ -44,17 +69,18 @@ impl Bystanders {
     /// What they are, at `step` of their record, to the judged vehicle at arc length `s` (m).
     #[must_use]
     pub fn around(&self, encounter: &Encounter, step: usize, s: f32) -> TrafficContext {
-        let there = self.conflicts.iter().filter_map(|(conflict, index)| {
-            let bystander = encounter.participants.get(*index)?;
-            let k = step.checked_sub(bystander.appears as usize)?;
-            let sample = bystander.record.get(k)?;
+        let meetings = self.meetings.iter();
+        let there = meetings.filter(|meeting| meeting.there.contains(&step));
+        let nearby = there.filter_map(|meeting| {
+            let record = &encounter.participants.get(meeting.index)?.record;
+            let sample = record.get(step - meeting.there.start)?;
             Some(NearbyVehicle {
-                conflict,
+                conflict: &meeting.conflict,
                 s: sample.s,
                 speed: sample.v,
             })
         });
-        TrafficContext::new(s, there)
+        TrafficContext::new(s, nearby)
     }
 }
 
@@ -111,7 +137,7 @@ impl<'e> ObservationModel<'e> {
                 },
                 other: bare[1 - i],
                 kind: self.kind,
-                right_of_way: RightOfWay::Unsettled,
+                right_of_way: right_of_way(self.encounter, i),
                 part: if i == 0 { Part::Left } else { Part::Other },
                 last_svo: if i == 0 {
                     last_svo
@@ -149,6 +175,50 @@ impl<'e> ObservationModel<'e> {
             footprint: Footprint::PAPER,
             leader: None,
             crosser: None,
+            control: self.encounter.participants[i].entry.control,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::crossing;
+    use crate::meeting::{Meeting, path};
+    use cede_controller::Control;
+    use cede_data::encounter::Role;
+    use cede_data::{Rights, Rule};
+
+    /// What the two are told in training, and what the controller is told.
+    fn told(rule: Rule) -> [[RightOfWay; 2]; 2] {
+        let mut encounter = crossing([20.0, 8.0], [30.0, 8.0]);
+        encounter.rights = Rights {
+            first: Some(Role::Other),
+            rule,
+        };
+        encounter.participants[0].entry.control = Control::Stop;
+        let states = [State { s: 60.0, v: 5.0 }; 2];
+        let pairs = ObservationModel::new(&encounter).pairs(0, states, FRAC_PI_4);
+        let junction = Meeting::new(&encounter).unwrap().junction;
+        for i in 0..2 {
+            assert_eq!(
+                junction.path(path(i)).unwrap().control(),
+                pairs[i].ego.control
+            );
+            assert_eq!(pairs[i].ego.control, pairs[1 - i].other.control);
+        }
+        assert_eq!(pairs[0].ego.control, Control::Stop);
+        let conflict = |i: usize| junction.conflict(path(i), path(1 - i)).unwrap();
+        [
+            pairs.map(|pair| pair.right_of_way),
+            [0, 1].map(|i| conflict(i).right_of_way),
+        ]
+    }
+
+    #[test]
+    fn training_and_controller_are_told_the_same_right_of_way() {
+        let settled = [RightOfWay::Other, RightOfWay::Ego];
+        assert_eq!(told(Rule::LeftTurn), [settled; 2]);
+        assert_eq!(told(Rule::AllWayStop), [[RightOfWay::Unsettled; 2]; 2]);
     }
 }

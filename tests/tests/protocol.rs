@@ -19,6 +19,7 @@ fn row(dataset: &Dataset, baseline: Baseline, selection: Selection) -> TableRow 
         drives.extend(evaluate(&*factory, &round.judged, protocol).drives);
     }
     let label = Label {
+        site: &dataset.site.name,
         driver: baseline.name(),
         split: selection.name(),
         mode: "joint",

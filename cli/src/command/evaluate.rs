@@ -7,7 +7,7 @@ use crate::drivers::Drivers;
 use crate::failure::Failure;
 use crate::judge::{ModeName, Plan, ShieldName, UntilName};
 use crate::report::{Report, command};
-use crate::source::{Source, not_empty};
+use crate::source::{Source, names, not_empty};
 use crate::table;
 use crate::threads::Threads;
 use cede_data::{Dataset, Split};
@@ -25,8 +25,8 @@ pub(crate) struct Args {
     /// Drivers to judge, separated by commas, or `all`
     #[arg(long, default_value = "all", value_name = "NAME[,NAME…]")]
     driver: Drivers,
-    /// Encounters to judge on: train, validation, test, all, leave-one-file-out, separated by
-    /// commas; by default those of the first three that contain encounters
+    /// Encounters to judge on: train, validation, test, all, leave-one-file-out, seven-fold,
+    /// separated by commas; by default those of the first three that contain encounters
     #[arg(long, value_delimiter = ',', value_name = "NAME[,NAME…]")]
     split: Vec<Selection>,
     /// Which vehicles are under test
@@ -76,34 +76,33 @@ struct Output<'a> {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     args.threads.start()?;
     let mut plan = args.plan()?;
-    let dataset = args.source.load(args.seed)?;
-    not_empty(&dataset)?;
-    if plan.selections.is_empty() {
-        plan.selections = present(&dataset);
+    let sites = args.source.load(args.seed)?;
+    sites.iter().try_for_each(not_empty)?;
+    let mut report = args.report_on(&sites)?;
+    let (mut records, mut rows) = (Vec::new(), Vec::new());
+    for dataset in &sites {
+        if args.split.is_empty() {
+            plan.selections = present(dataset);
+        }
+        rows.extend(plan.judge(dataset, |row, drives| {
+            if args.episodes.is_some() {
+                records.extend(episodes::records(row, drives));
+            }
+            if let Some(report) = &mut report {
+                report.add(row, drives);
+            }
+        })?);
     }
-    let mut records = Vec::new();
-    let mut report = args
-        .report
-        .as_ref()
-        .map(|_| Report::new(&dataset, &command()));
-    let rows = plan.judge(&dataset, |row, drives| {
-        if args.episodes.is_some() {
-            records.extend(episodes::records(row, drives));
-        }
-        if let Some(report) = &mut report {
-            report.add(row, drives);
-        }
-    })?;
     if let Some(file) = &args.episodes {
         file.write(&records)?;
     }
     if let (Some(mut report), Some(path)) = (report, &args.report) {
         if args.shield != ShieldName::Off {
-            report.sweep(&dataset, args.contract.unwrap_or_default().0)?;
+            report.sweep(&sites[0], args.contract.unwrap_or_default().0)?;
         }
         report.write(path)?;
     }
-    args.print(&dataset, &rows)
+    args.print(&sites, &rows)
 }
 
 impl Args {
@@ -130,12 +129,25 @@ impl Args {
         })
     }
 
-    fn print(&self, dataset: &Dataset, rows: &[TableRow]) -> Result<(), Failure> {
-        let site = dataset.site.name.as_str();
+    /// The report of `--report`.
+    ///
+    /// # Errors
+    /// There are several sites: a report draws one map.
+    fn report_on(&self, sites: &[Dataset]) -> Result<Option<Report>, Failure> {
+        match (&self.report, sites) {
+            (None, _) => Ok(None),
+            (Some(_), [site]) => Ok(Some(Report::new(site, &command()))),
+            (Some(_), _) => Err(Failure::Usage(
+                "a report shows one site: leave out --report, or name one site".to_owned(),
+            )),
+        }
+    }
+
+    fn print(&self, sites: &[Dataset], rows: &[TableRow]) -> Result<(), Failure> {
         if self.json {
             let output = Output {
                 data: &self.source.data,
-                site,
+                site: &names(sites),
                 seed: self.seed,
                 rows,
             };
@@ -143,7 +155,7 @@ impl Args {
             let text = text.map_err(|error| Failure::input(error, "report this as a bug"))?;
             println!("{text}");
         } else {
-            print!("{}", table::render(rows, site == "EP0"));
+            print!("{}", table::render(rows));
         }
         Ok(())
     }

@@ -105,6 +105,7 @@ fn drive(
         return Err(Failure::input(words, "name another encounter with --pair"));
     }
     let label = Label {
+        site: &encounter.id.site,
         driver: contender.name(),
         split: "all",
         mode: "joint",

@@ -10,12 +10,13 @@ mod plan;
 mod summary;
 
 use crate::failure::Failure;
-use crate::report::{self, Report};
+use crate::report::{self, Learned, Report};
 use crate::settings::AlgorithmName;
-use crate::source::Source;
+use crate::source::{self, Source};
 use crate::threads::Threads;
-use cede_data::Split;
-use std::path::PathBuf;
+use cede_data::{Dataset, Split};
+use cede_sim::evaluate::{Drive, Selection, TableRow};
+use std::path::{Path, PathBuf};
 use summary::Seeded;
 
 /// Options of `cede reproduce`.
@@ -39,9 +40,13 @@ pub(crate) struct Args {
     /// --show-settings` prints the names
     #[arg(long, value_name = "ROW.NAME=VALUE")]
     set: Vec<String>,
-    /// Also train without each file in turn and judge on that file: one more training per file
+    /// Also train without each file in turn and judge on that file: one more training per file. Of several
+    /// sites, one file of each is left out at a time
     #[arg(long)]
     leave_one_file_out: bool,
+    /// Also train seven times without every seventh file of each site and judge on those
+    #[arg(long, conflicts_with = "leave_one_file_out")]
+    seven_fold: bool,
     /// Also judge on all encounters of this site, in the same folder; nothing is trained on it
     #[arg(long, value_name = "SITE")]
     transfer: Option<String>,
@@ -64,56 +69,113 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if args.transfer.is_some() && args.source.is_synthetic() {
         return Err(Failure::ignored("--transfer", "--data synthetic"));
     }
-    let rows = plan::rows(args)?;
-    let dataset = args.source.load(1)?;
-    if dataset.split(Split::Train).next().is_none() {
-        return Err(Failure::input(
-            "no encounters in the training files",
-            "add training files to the folder, or name another site",
-        ));
-    }
+    let sites = args.source.load(1)?;
+    let rows = plan::rows(args, args.source.is_several())?;
+    sites.iter().try_for_each(trainable)?;
     let transfer = plan::transfer_site(args)?;
-    let auxiliary = rows
-        .iter()
-        .any(|row| row.algorithm.uses_auxiliary_encounters());
-    let every_pair = auxiliary.then(|| dataset.every_pair());
+    let every_pair = plan::every_pair(&rows, &sites);
     let data = plan::Data {
-        dataset: &dataset,
-        every_pair: every_pair.as_ref(),
+        sites: &sites,
+        every_pair: &every_pair,
         transfer: transfer.as_ref(),
     };
-    let jobs = data.jobs(&rows, args.seeds, args.leave_one_file_out);
-    let trained = job::train_all(&jobs, &dataset.site.name, &args.out, args.resume).inspect_err(
-        |failure| {
-            if let Failure::Interrupted = failure {
-                eprintln!("saved to {}; continue with --resume", args.out.display());
-            }
-        },
-    )?;
+    let held_out = args.held_out();
+    let jobs = data.jobs(&rows, args.seeds, held_out);
+    let names = source::names(&sites);
+    let trained = job::train_all(&jobs, &names, &args.out, args.resume).inspect_err(|failure| {
+        if let Failure::Interrupted = failure {
+            eprintln!("saved to {}; continue with --resume", args.out.display());
+        }
+    })?;
 
-    let mut report = Report::new(&dataset, &report::command());
+    let mut reports = Reports::new(&sites);
     let mut rows = Vec::new();
     for judged in judge::policies(&jobs, &trained)? {
         if judged.seed == 0 {
-            report.add(&judged.row, &judged.drives);
+            reports.add(&judged.row, &judged.drives);
         }
         rows.push(Seeded {
             seed: Some(judged.seed),
             row: judged.row,
         });
     }
-    let baselines = judge::baselines(&dataset, args.leave_one_file_out);
-    let baselines = baselines.judge(&dataset, |row, drives| report.add(row, drives))?;
-    rows.extend(baselines.into_iter().map(|row| Seeded { seed: None, row }));
+    for dataset in &sites {
+        let baselines = judge::baselines(dataset, held_out);
+        let baselines = baselines.judge(dataset, |row, drives| reports.add(row, drives))?;
+        rows.extend(baselines.into_iter().map(|row| Seeded { seed: None, row }));
+    }
 
     let curves = output::curves(&jobs, &trained);
-    report.learned(&curves);
-    report.write(&args.out.join("report.html"))?;
+    reports.write(&curves, &args.out)?;
     let output = output::Output {
         data: &args.source.data,
-        site: &dataset.site.name,
+        site: &names,
         rows: &rows,
         curves: &curves,
     };
     output.write(&args.out, args.json)
+}
+
+impl Args {
+    /// The cross-validation that is asked for.
+    fn held_out(&self) -> Option<Selection> {
+        if self.leave_one_file_out {
+            Some(Selection::LeaveOneFileOut)
+        } else {
+            self.seven_fold.then_some(Selection::SevenFold)
+        }
+    }
+}
+
+/// Checks that there is something to learn from at a site.
+fn trainable(dataset: &Dataset) -> Result<(), Failure> {
+    if dataset.split(Split::Train).next().is_some() {
+        return Ok(());
+    }
+    Err(Failure::input(
+        format!(
+            "no encounters in the training files of {}",
+            dataset.site.name
+        ),
+        "add training files to the folder, or name another site",
+    ))
+}
+
+/// The reports: one a site.
+struct Reports(Vec<(String, Report)>);
+
+impl Reports {
+    fn new(sites: &[Dataset]) -> Self {
+        let command = report::command();
+        let named = |site: &Dataset| (site.site.name.clone(), Report::new(site, &command));
+        Self(sites.iter().map(named).collect())
+    }
+
+    /// Adds a row to the report of its site, or else to all reports: it is one of a site that nothing is
+    /// trained on.
+    fn add(&mut self, row: &TableRow, drives: &[Drive<'_>]) {
+        let known = self.0.iter().any(|(site, _)| *site == row.site);
+        for (_, report) in self
+            .0
+            .iter_mut()
+            .filter(|(site, _)| !known || *site == row.site)
+        {
+            report.add(row, drives);
+        }
+    }
+
+    /// Writes `report.html`, or for several sites `report-SITE.html` for each.
+    fn write(self, curves: &[Learned], folder: &Path) -> Result<(), Failure> {
+        let alone = self.0.len() == 1;
+        for (site, mut report) in self.0 {
+            let name = if alone {
+                "report.html".to_owned()
+            } else {
+                format!("report-{site}.html")
+            };
+            report.learned(curves);
+            report.write(&folder.join(name))?;
+        }
+        Ok(())
+    }
 }

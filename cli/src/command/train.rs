@@ -32,7 +32,8 @@ pub(crate) struct Args {
     out: Option<PathBuf>,
     #[command(flatten)]
     options: Options,
-    /// Print the algorithm's settings as TOML and exit; no other option is needed
+    /// Print the algorithm's settings as TOML and exit; no other option is needed. With several sites in
+    /// --site those are printed that are used for several sites
     #[arg(long)]
     show_settings: bool,
 }
@@ -82,7 +83,8 @@ const DATA_SEED: u64 = 1;
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let settings = args.method.settings()?;
+    let several = args.source.as_ref().is_some_and(Source::is_several);
+    let settings = args.method.settings(several)?;
     match (&args.source, &args.out) {
         (Some(source), Some(out)) if !args.show_settings => {
             let order = Order {
@@ -101,8 +103,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 }
 
 impl Method {
-    fn settings(&self) -> Result<TrainSettings, Failure> {
-        let mut settings = self.algorithm.0.settings();
+    /// The settings for one site or for `several`.
+    fn settings(&self, several: bool) -> Result<TrainSettings, Failure> {
+        let mut settings = if several {
+            self.algorithm.0.several_sites()
+        } else {
+            self.algorithm.0.settings()
+        };
         if let Some(path) = &self.settings {
             settings = with(&settings, &read(path)?, &path.display().to_string())?;
         }

@@ -98,7 +98,11 @@ impl Map {
             points: points(&line.points),
         };
         Self {
-            lanes: map.lanes.iter().map(points).collect(),
+            lanes: map
+                .lanelets
+                .iter()
+                .map(|lane| points(&lane.outline()))
+                .collect(),
             lines: map.lines.iter().map(line).collect(),
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::geometry::{Footprint, Point, length};
 use crate::junction::conflict::{ConflictKind, RightOfWay, RouteConflict};
+use crate::junction::control::Control;
 use crate::junction::error::JunctionError;
 use crate::junction::meeting::within;
 use crate::junction::path::{Class, MAX_FOOTPRINT, MAX_PATH_LENGTH, Path, PathId};
@@ -91,6 +92,7 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
             footprint,
             exit: route.pose(route.length()).direction,
             line: 0.0,
+            control: Control::Unknown,
             range: start..end,
         })?;
         Ok(id)
@@ -137,6 +139,18 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
         }
         if let Some(line) = self.lines.get_mut(path.index()) {
             *line = Some(s);
+        }
+        Ok(())
+    }
+
+    /// Says what obliges vehicles of `path` to give way: what a policy is told, and no shield counts on.
+    ///
+    /// # Errors
+    /// [`JunctionError::UnknownPath`].
+    pub fn control(&mut self, path: PathId, control: Control) -> Result<(), JunctionError> {
+        self.known(path)?;
+        if let Some(path) = self.junction.paths.get_mut(path.index()) {
+            path.control = control;
         }
         Ok(())
     }

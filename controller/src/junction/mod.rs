@@ -2,6 +2,7 @@
 
 mod builder;
 pub(crate) mod conflict;
+mod control;
 mod error;
 mod meeting;
 mod path;
@@ -15,6 +16,7 @@ pub mod zone;
 
 pub use builder::{JunctionBuilder, MAX_TOLERANCE};
 pub use conflict::{ConflictKind, RightOfWay, RouteConflict};
+pub use control::Control;
 pub use error::JunctionError;
 pub use meeting::CONFLICT_RADIUS;
 pub use path::{Class, MAX_FOOTPRINT, MAX_PATH_LENGTH, Path, PathId};

@@ -1,6 +1,7 @@
 //! What a junction keeps of each route and of the class of vehicles that drives along it.
 
 use crate::geometry::{Footprint, UnitVector};
+use crate::junction::control::Control;
 use core::ops::Range;
 
 /// Largest side of a footprint in metres.
@@ -53,6 +54,7 @@ pub struct Path {
     pub(super) footprint: Footprint,
     pub(super) exit: UnitVector,
     pub(super) line: f32,
+    pub(super) control: Control,
     /// Its points in the pool.
     pub(super) range: Range<usize>,
 }
@@ -80,5 +82,11 @@ impl Path {
     #[must_use]
     pub const fn line(&self) -> f32 {
         self.line
+    }
+
+    /// What obliges a vehicle to give way where it enters the junction; unknown unless the builder was told.
+    #[must_use]
+    pub const fn control(&self) -> Control {
+        self.control
     }
 }

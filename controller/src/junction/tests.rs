@@ -93,6 +93,7 @@ fn rights_of_way_are_opposite() {
     let [east, north, ramp, lorry] = ids();
     builder.right_of_way(east, north).unwrap();
     builder.right_of_way(ramp, east).unwrap();
+    builder.control(north, Control::Stop).unwrap();
     builder.right_of_way(lorry, ramp).unwrap();
     let junction = builder.build().unwrap();
     let right = |ego, other| junction.conflict(ego, other).unwrap().right_of_way;
@@ -101,6 +102,11 @@ fn rights_of_way_are_opposite() {
     assert_eq!(right(east, ramp), RightOfWay::Other);
     assert_eq!(right(north, ramp), RightOfWay::Unsettled);
     assert_eq!(junction.conflict(ramp, lorry), None);
+    let control = |id: PathId| junction.path(id).unwrap().control();
+    assert_eq!(
+        (control(north), control(east)),
+        (Control::Stop, Control::Unknown)
+    );
 }
 
 #[test]

@@ -1,12 +1,13 @@
 //! What the network is told about a [`Pair`], and how it is scaled.
 
+use crate::junction::Control;
 use crate::junction::conflict::ConflictKind;
 use crate::junction::conflict::RightOfWay;
 use crate::policy::pair::{Crosser, Leader, Pair, VehicleState};
 use crate::real::Elementary;
 
 /// Most features that a set has.
-pub const MAX_FEATURES: usize = 19;
+pub const MAX_FEATURES: usize = 22;
 
 /// A normalised feature is limited to ± this, so that no input whatsoever overflows the network.
 pub const LIMIT: f32 = 8.0;
@@ -63,6 +64,17 @@ const SCENE_LABELS: [&str; 5] = [
     "crosser_its_speed",
 ];
 
+const RIGHTS_LABELS: [&str; 8] = [
+    "ego_leader_gap",
+    "ego_leader_speed",
+    "crosser_distance",
+    "crosser_its_distance",
+    "crosser_its_speed",
+    "all_way_stop",
+    "ego_gives_way",
+    "other_gives_way",
+];
+
 /// Which features a network is told; the order of the values is part of the weights file's format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -89,11 +101,20 @@ pub enum FeatureSet {
     /// distance (m) and speed (m/s), distances within ± [`HORIZON`]; a third vehicle that is not there
     /// is far away and at rest.
     Scene,
+    /// `Scene`, then what the signs say: 1 at an all-way stop, else 0; and for the ego and for the other 1 if it
+    /// has to stop, 0.5 if it gives way without a stop, 0 if it is free or nothing is known.
+    Rights,
 }
 
 impl FeatureSet {
     /// Every set, in the order of their codes in the weights file.
-    pub const ALL: [Self; 4] = [Self::Raw, Self::Route, Self::Traffic, Self::Scene];
+    pub const ALL: [Self; 5] = [
+        Self::Raw,
+        Self::Route,
+        Self::Traffic,
+        Self::Scene,
+        Self::Rights,
+    ];
 
     /// Number of features, at most [`MAX_FEATURES`].
     #[must_use]
@@ -103,6 +124,7 @@ impl FeatureSet {
             Self::Route => 14,
             Self::Traffic => 18,
             Self::Scene => 19,
+            Self::Rights => 22,
         }
     }
 
@@ -114,6 +136,7 @@ impl FeatureSet {
             Self::Route => "route",
             Self::Traffic => "traffic",
             Self::Scene => "scene",
+            Self::Rights => "rights",
         }
     }
 
@@ -124,6 +147,7 @@ impl FeatureSet {
             Self::Route => (&ROUTE_LABELS, &[]),
             Self::Traffic => (&ROUTE_LABELS, &TRAFFIC_LABELS),
             Self::Scene => (&ROUTE_LABELS, &SCENE_LABELS),
+            Self::Rights => (&ROUTE_LABELS, &RIGHTS_LABELS),
         };
         first.iter().chain(rest).copied()
     }
@@ -152,6 +176,14 @@ impl FeatureSet {
                     .into_iter()
                     .chain(leader(ego))
                     .chain(crosser(ego)),
+            ),
+            Self::Rights => fill(
+                &mut features,
+                route(pair)
+                    .into_iter()
+                    .chain(leader(ego))
+                    .chain(crosser(ego))
+                    .chain(signs(pair)),
             ),
         }
         features
@@ -252,6 +284,22 @@ fn crosser<R: Elementary>(vehicle: &VehicleState<R>) -> [R; 3] {
     ]
 }
 
+fn signs<R: Elementary>(pair: &Pair<R>) -> [R; 3] {
+    let controls = [pair.ego.control, pair.other.control];
+    let gives_way = controls.map(|control| {
+        R::of(match control {
+            Control::Unknown | Control::Free => 0.0,
+            Control::Yield => 0.5,
+            Control::Stop | Control::AllWayStop => 1.0,
+        })
+    });
+    let all = controls
+        .iter()
+        .all(|&control| control == Control::AllWayStop);
+    let [ego, other] = gives_way;
+    [R::of(if all { 1.0 } else { 0.0 }), ego, other]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -275,6 +323,21 @@ mod tests {
         assert_eq!(f[7..9], [12.0 - 6.0, 20.0 - 64.0 / 6.0]);
         assert_eq!(f[9..12], [1.0, 0.0, -1.0]);
         assert_eq!(f[12..14], [1.0, 0.0]);
+    }
+
+    #[test]
+    fn signs_have_their_documented_places() {
+        let signs = |ego, other| {
+            let mut pair = pair();
+            (pair.ego.control, pair.other.control) = (ego, other);
+            let f = FeatureSet::Rights.of(&pair);
+            [f[19], f[20], f[21]]
+        };
+        use Control::{AllWayStop, Free, Stop, Unknown, Yield};
+        assert_eq!(signs(AllWayStop, AllWayStop), [1.0, 1.0, 1.0]);
+        assert_eq!(signs(AllWayStop, Free), [0.0, 1.0, 0.0]);
+        assert_eq!(signs(Yield, Stop), [0.0, 0.5, 1.0]);
+        assert_eq!(signs(Unknown, Free), [0.0; 3]);
     }
 
     #[test]

@@ -112,6 +112,7 @@ mod tests {
     extern crate std;
     use super::*;
     use crate::geometry::{Footprint, Point, Pose, unit};
+    use crate::junction::Control;
     use crate::junction::conflict::ConflictKind;
     use crate::junction::conflict::RightOfWay;
     use crate::policy::features::FeatureSet;
@@ -148,6 +149,7 @@ mod tests {
                 footprint: Footprint { length, width },
                 leader: follows.then_some(Leader { gap, speed: leads }),
                 crosser: follows.then_some(Crosser { distance: gap, its_distance: leads, its_speed: speed }),
+                control: Control::ALL[bits[0] as usize % Control::ALL.len()],
             }
         }
     }

@@ -1,6 +1,7 @@
 //! The ego and one other vehicle, as the policy sees them.
 
 use crate::geometry::{Footprint, Pose, UnitVector};
+use crate::junction::Control;
 use crate::junction::conflict::{ConflictKind, RightOfWay};
 use crate::real::Elementary;
 use core::f32::consts::FRAC_PI_2;
@@ -23,6 +24,8 @@ pub struct VehicleState<R: Scalar = f32> {
     pub leader: Option<Leader<R>>,
     /// The third vehicle that will first be where its route meets this one's, if there is one.
     pub crosser: Option<Crosser<R>>,
+    /// What obliges it to give way where it enters the junction.
+    pub control: Control,
 }
 
 /// The vehicle ahead in the same lane.
@@ -126,6 +129,7 @@ pub(crate) mod testing {
             footprint: Footprint::PAPER,
             leader: None,
             crosser: None,
+            control: Control::Unknown,
         };
         let (east, north, west) = (unit(1.0, 0.0), unit(0.0, 1.0), unit(-1.0, 0.0));
         Pair {

@@ -99,7 +99,7 @@ impl Generated {
         };
         let tracks = Traffic::new(&layout, flow, rng).record(WARM_UP, STEPS);
         let recording = Recording { file, tracks };
-        let encounters = extract(&layout.site(), &recording);
+        let encounters = extract(&layout.site(), None, &recording);
         Self {
             layout,
             recording,

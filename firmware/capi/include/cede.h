@@ -1341,7 +1341,7 @@ typedef struct cede_policy_info {
      */
     uint16_t width;
     /**
-     * Features that the network is told: 0 raw, 1 route, 2 traffic, 3 scene.
+     * Features that the network is told: 0 raw, 1 route, 2 traffic, 3 scene, 4 rights.
      */
     uint8_t features;
     /**

@@ -34,7 +34,7 @@ pub struct cede_policy_info {
     pub provenance: [u8; 32],
     /// Neurons of a hidden layer.
     pub width: u16,
-    /// Features that the network is told: 0 raw, 1 route, 2 traffic, 3 scene.
+    /// Features that the network is told: 0 raw, 1 route, 2 traffic, 3 scene, 4 rights.
     pub features: u8,
     /// Whose commands it gives: 0 joint, 1 the ego's.
     pub perspective: u8,
@@ -117,6 +117,7 @@ fn described(policy: &Policy<'_>) -> cede_policy_info {
             FeatureSet::Route => 1,
             FeatureSet::Traffic => 2,
             FeatureSet::Scene => 3,
+            FeatureSet::Rights => 4,
             _ => u8::MAX,
         },
         perspective: match weights.perspective() {

@@ -1,6 +1,9 @@
 //! The rule-based drivers by name.
 
-use super::{DriverFactory, Human, Idm, InitialSpeed, Logistic, MeanSpeed, NearerFirst, Replay};
+use super::{
+    DriverFactory, Human, Idm, InitialSpeed, Logistic, MeanSpeed, NearerFirst, Replay,
+    RuleOfTheRoad,
+};
 use cede_data::encounter::Encounter;
 use std::fmt;
 use std::str::FromStr;
@@ -17,6 +20,8 @@ pub enum Baseline {
     MeanSpeed,
     /// The nearer goes, the other stops.
     NearerFirst,
+    /// Who has the right of way goes; the other waits.
+    RuleOfTheRoad,
     /// The intelligent driver model with stop-sign behaviour.
     Idm,
     /// The human driver of the synthetic scenarios.
@@ -35,11 +40,12 @@ pub enum FitError {
 
 impl Baseline {
     /// All of them, in the order of the table.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Replay,
         Self::InitialSpeed,
         Self::MeanSpeed,
         Self::NearerFirst,
+        Self::RuleOfTheRoad,
         Self::Idm,
         Self::Human,
         Self::Logistic,
@@ -53,6 +59,7 @@ impl Baseline {
             Self::InitialSpeed => "initial-speed",
             Self::MeanSpeed => "mean-speed",
             Self::NearerFirst => "nearer-first",
+            Self::RuleOfTheRoad => "rule-of-the-road",
             Self::Idm => "idm",
             Self::Human => "human",
             Self::Logistic => "logistic",
@@ -71,6 +78,7 @@ impl Baseline {
                 Box::new(MeanSpeed::fit(training).ok_or(FitError::NoTraining(self))?)
             }
             Self::NearerFirst => Box::new(NearerFirst),
+            Self::RuleOfTheRoad => Box::new(RuleOfTheRoad),
             Self::Idm => Box::new(Idm),
             Self::Human => Box::new(Human),
             Self::Logistic => Box::new(Logistic::fit(training).ok_or(FitError::NoTraining(self))?),

@@ -1,5 +1,6 @@
 //! The trivial rule: the vehicle that is nearer to its conflict point goes, the other stops.
 
+use super::right_of_way::CRUISE;
 use super::{Driver, DriverFactory, View, right_of_way};
 use crate::meeting::Meeting;
 use cede_data::encounter::{Encounter, Role};
@@ -16,6 +17,7 @@ impl DriverFactory for NearerFirst {
     fn driver<'m>(&self, meeting: &'m Meeting<'_>, _: usize, _: u64) -> Box<dyn Driver + 'm> {
         Box::new(Decided {
             first: nearer(meeting.encounter),
+            cruise: CRUISE,
         })
     }
 }
@@ -36,10 +38,12 @@ fn nearer(encounter: &Encounter) -> Role {
 /// Drives as one who knows from the start who goes first.
 pub(super) struct Decided {
     pub(super) first: Role,
+    /// Speed (m/s) that a vehicle takes up where it may.
+    pub(super) cruise: f32,
 }
 
 impl Driver for Decided {
     fn accelerate(&mut self, view: &View<'_>) -> f32 {
-        right_of_way::accelerate(view, self.first)
+        right_of_way::accelerate(view, self.first, self.cruise)
     }
 }

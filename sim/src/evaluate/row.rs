@@ -2,8 +2,8 @@
 
 use super::Drive;
 use crate::episode::End;
-use crate::metrics::HORIZONS;
-use crate::statistics::{Mean, Share};
+use crate::metrics::{HORIZONS, Measures};
+use crate::statistics::{Mean, Share, mean_by_group};
 use cede_data::encounter::EncounterId;
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -19,6 +19,8 @@ pub type ConfidenceInterval = [f64; 2];
 pub struct TableRow {
     /// Name of the driver.
     pub driver: String,
+    /// Name of the site.
+    pub site: String,
     /// Name of the split.
     pub split: String,
     /// `joint` or `ego`.
@@ -35,10 +37,15 @@ pub struct TableRow {
     pub priority_accuracy: Option<f64>,
     /// Its Wilson interval.
     pub priority_accuracy_interval: Option<ConfidenceInterval>,
+    /// Its bootstrap interval, resampled by recording files: samples of a file share vehicles. `None` for one
+    /// file.
+    pub priority_accuracy_interval_by_file: Option<ConfidenceInterval>,
     /// Mean of |l − l_GT| / l_GT.
     pub episode_length_error: Option<f64>,
     /// Its interval by the normal approximation.
     pub episode_length_error_interval: Option<ConfidenceInterval>,
+    /// Its bootstrap interval, resampled by recording files; `None` for one file.
+    pub episode_length_error_interval_by_file: Option<ConfidenceInterval>,
     /// Mean of |l − l_GT| in seconds.
     pub episode_length_error_s: Option<f64>,
     /// Episodes that ended in a collision.
@@ -74,6 +81,8 @@ pub struct TableRow {
 pub struct Label<'a> {
     /// Name of the driver.
     pub driver: &'a str,
+    /// Name of the site.
+    pub site: &'a str,
     /// Name of the split.
     pub split: &'a str,
     /// `joint` or `ego`.
@@ -98,6 +107,7 @@ impl TableRow {
             drives.iter().map(|drive| &drive.encounter.id).collect();
         Self {
             driver: label.driver.to_owned(),
+            site: label.site.to_owned(),
             split: label.split.to_owned(),
             mode: label.mode.to_owned(),
             until: label.until.to_owned(),
@@ -106,11 +116,13 @@ impl TableRow {
             encounters: encounters.len(),
             priority_accuracy: priority.fraction(),
             priority_accuracy_interval: priority.interval(),
+            priority_accuracy_interval_by_file: by_file(drives, |m| f64::from(u8::from(m.correct))),
             episode_length_error: length.map(|mean| mean.mean),
             // An error is never negative, whatever the normal approximation says.
             episode_length_error_interval: length
                 .and_then(Mean::interval)
                 .map(|interval| interval.map(|bound| bound.max(0.0))),
+            episode_length_error_interval_by_file: by_file(drives, |m| m.length_error),
             episode_length_error_s: mean(measures().map(|m| m.length_error_s)),
             collisions: collisions.count,
             collision_share_interval: collisions.interval(),
@@ -134,6 +146,16 @@ impl TableRow {
 
 // The fields above name the horizons.
 const _: () = assert!(matches!(HORIZONS, [1, 3, 5]));
+
+/// The interval of the mean of a measure, resampled by recording files.
+fn by_file(drives: &[Drive<'_>], measure: impl Fn(&Measures) -> f64) -> Option<ConfidenceInterval> {
+    let file = |drive: &Drive<'_>| (drive.encounter.id.site.clone(), drive.encounter.id.file);
+    mean_by_group(
+        drives
+            .iter()
+            .map(|drive| (file(drive), measure(&drive.measures))),
+    )
+}
 
 fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     Mean::of(values).map(|mean| mean.mean)

@@ -1,7 +1,7 @@
 //! Which encounters are judged, and which may be learned from.
 
 use cede_data::encounter::Encounter;
-use cede_data::{Dataset, Split};
+use cede_data::{Dataset, Fold, Split};
 use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
@@ -13,6 +13,8 @@ pub enum Selection {
     Split(Split),
     /// All, each file by drivers fitted on the other files.
     LeaveOneFileOut,
+    /// All, every seventh file by drivers fitted on the other files: seven rounds.
+    SevenFold,
 }
 
 /// What to fit on, and what to judge then.
@@ -24,14 +26,27 @@ pub struct Round<'a> {
     pub judged: Vec<&'a Encounter>,
 }
 
+impl<'a> From<Fold<'a>> for Round<'a> {
+    fn from(fold: Fold<'a>) -> Self {
+        Self {
+            training: fold.train,
+            judged: fold.held_out,
+        }
+    }
+}
+
+/// Rounds of [`Selection::SevenFold`].
+const SEVEN: usize = 7;
+
 impl Selection {
     /// All of them.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Split(Split::Train),
         Self::Split(Split::Validation),
         Self::Split(Split::Test),
         Self::Split(Split::All),
         Self::LeaveOneFileOut,
+        Self::SevenFold,
     ];
 
     /// Name on the command line and in tables.
@@ -43,26 +58,44 @@ impl Selection {
             Self::Split(Split::Test) => "test",
             Self::Split(Split::All) => "all",
             Self::LeaveOneFileOut => "leave-one-file-out",
+            Self::SevenFold => "seven-fold",
         }
     }
 
-    /// The rounds in which `dataset` is judged; one for a split, one a file for leave-one-file-out.
+    /// The rounds in which `dataset` is judged; one for a split.
     #[must_use]
     pub fn rounds(self, dataset: &Dataset) -> Vec<Round<'_>> {
-        match self {
-            Self::Split(split) => vec![Round {
-                training: dataset.split(Split::Train).collect(),
-                judged: dataset.split(split).collect(),
-            }],
-            Self::LeaveOneFileOut => dataset
-                .folds()
-                .into_iter()
-                .map(|fold| Round {
-                    training: fold.train,
-                    judged: fold.held_out,
-                })
-                .collect(),
-        }
+        let rounds = match self {
+            Self::Split(split) => {
+                return vec![Round {
+                    training: dataset.split(Split::Train).collect(),
+                    judged: dataset.split(split).collect(),
+                }];
+            }
+            Self::LeaveOneFileOut => dataset.files().len(),
+            Self::SevenFold => SEVEN,
+        };
+        dataset.folds(rounds).into_iter().map(Round::from).collect()
+    }
+
+    /// The rounds of a cross-validation by file of all `sites` together; none for a split. In round i each
+    /// site leaves out its i-th file and so on, as in [`Dataset::folds`].
+    #[must_use]
+    pub fn cross_validation<'d>(self, sites: &'d [Dataset]) -> Vec<Vec<Fold<'d>>> {
+        let rounds = match self {
+            Self::Split(_) => 0,
+            Self::LeaveOneFileOut => {
+                let files = sites.iter().map(|site| site.files().len());
+                files.max().unwrap_or(0)
+            }
+            Self::SevenFold => SEVEN,
+        };
+        let mut of_sites: Vec<_> = sites
+            .iter()
+            .map(|site| site.folds(rounds).into_iter())
+            .collect();
+        let round = |_| of_sites.iter_mut().filter_map(Iterator::next).collect();
+        (0..rounds).map(round).collect()
     }
 }
 
@@ -74,7 +107,7 @@ impl fmt::Display for Selection {
 
 /// There is no selection of that name.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("no split is called `{0}`: train, validation, test, all, leave-one-file-out")]
+#[error("no split is called `{0}`: train, validation, test, all, leave-one-file-out, seven-fold")]
 pub struct UnknownSelection(String);
 
 impl FromStr for Selection {

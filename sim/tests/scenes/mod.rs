@@ -3,7 +3,9 @@
 
 use cede_controller::kinematics::{STEP, State, advance};
 use cede_controller::{ConflictKind, Footprint, Point};
-use cede_data::{Encounter, EncounterId, Manoeuvre, Participant, Role, Sample, SimRoute};
+use cede_data::{
+    Encounter, EncounterId, Entry, Manoeuvre, Participant, Rights, Role, Sample, SimRoute,
+};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::f32::consts::FRAC_PI_2;
@@ -62,6 +64,7 @@ fn encounter(random: &mut Pcg64, number: u32, vehicles: u32) -> Encounter {
         } else {
             Role::Other
         },
+        rights: Rights::default(),
         pet: arrivals[0].abs_diff(arrivals[1]) as f32 * STEP,
         participants,
     }
@@ -103,6 +106,7 @@ fn participant(
     Participant {
         track,
         manoeuvre: Manoeuvre::Left,
+        entry: Entry::default(),
         route: route.clone(),
         footprint: Footprint::PAPER,
         conflict_s,

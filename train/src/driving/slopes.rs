@@ -53,6 +53,7 @@ fn moving(vehicle: &VehicleState, distance: usize) -> VehicleState<Dual> {
             its_distance: Dual::of(crosser.its_distance),
             its_speed: Dual::of(crosser.its_speed),
         }),
+        control: vehicle.control,
     }
 }
 
@@ -60,7 +61,7 @@ fn moving(vehicle: &VehicleState, distance: usize) -> VehicleState<Dual> {
 mod tests {
     use super::*;
     use cede_controller::geometry::{UnitVector, unit};
-    use cede_controller::{ConflictKind, Footprint, Part, Point, Pose, RightOfWay};
+    use cede_controller::{ConflictKind, Control, Footprint, Part, Point, Pose, RightOfWay};
 
     fn pair([d, v, other_d, other_v]: [f32; 4], surrounded: bool) -> Pair {
         let vehicle_state = |direction: UnitVector, distance: f32, speed: f32| VehicleState {
@@ -81,6 +82,7 @@ mod tests {
                 its_distance: 12.0,
                 its_speed: 5.0,
             }),
+            control: Control::Stop,
         };
         Pair {
             ego: vehicle_state(unit(0.8, 0.6), d, v),

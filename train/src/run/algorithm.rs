@@ -6,6 +6,7 @@ use crate::algorithm::bc::BcSettings;
 use crate::algorithm::sac::{Rates, SacSettings};
 use crate::driving::episodes::Reward;
 use crate::run::settings::TrainSettings;
+use cede_controller::FeatureSet;
 use serde::{Deserialize, Serialize};
 
 /// The algorithms. In files they are written as their names on the command line.
@@ -104,6 +105,27 @@ impl Algorithm {
                 },
                 ..settings
             }),
+        }
+    }
+
+    /// The settings for recordings of several sites, where who has the right of way differs from site to site:
+    /// the features that say so, and a longer training. Those of [`Algorithm::reproduction`] for all but the
+    /// analytic policy gradient. See `docs/method.md`.
+    #[must_use]
+    pub fn several_sites(self) -> TrainSettings {
+        match self.settings() {
+            TrainSettings::Apg(settings) => TrainSettings::Apg(ApgSettings {
+                features: FeatureSet::Rights,
+                members: 2,
+                updates: 3000,
+                cost: Cost {
+                    order: 5.0,
+                    late: 12.0,
+                    ..settings.cost
+                },
+                ..settings
+            }),
+            _ => self.reproduction(),
         }
     }
 

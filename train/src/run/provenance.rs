@@ -1,6 +1,6 @@
 //! What a policy was trained from: a text, and its SHA-256 for the weights file.
 
-use cede_data::Encounter;
+use cede_data::{Encounter, Entry, Rights};
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 
@@ -19,7 +19,14 @@ pub fn data_hash<'e>(
             "{:?} {:?} {}\n",
             encounter.kind, encounter.first, encounter.steps
         ));
+        // Nothing is known without a map.
+        if encounter.rights != Rights::default() {
+            hash.update(format!("{:?}\n", encounter.rights));
+        }
         for participant in &encounter.participants {
+            if participant.entry != Entry::default() {
+                hash.update(format!("{:?}\n", participant.entry));
+            }
             hash.update(participant.conflict_s.to_le_bytes());
             hash.update(participant.appears.to_le_bytes());
             for point in participant.route.points() {

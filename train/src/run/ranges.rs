@@ -112,6 +112,7 @@ pub(super) fn check_apg(s: &ApgSettings) -> Result<(), OutOfRange> {
         not_negative("cost.speed", cost.speed),
         not_negative("cost.expectation", cost.expectation),
         not_negative("cost.order", cost.order),
+        not_negative("cost.late", cost.late),
         not_negative("cost.contact", cost.contact),
         not_negative("cost.gap", cost.gap),
         positive("refinement.rate", refinement.rate),

@@ -39,6 +39,15 @@ impl TrainSettings {
         toml::to_string(self).unwrap_or_default()
     }
 
+    /// Whether auxiliary encounters are used beside those that are imitated: in a refinement.
+    #[must_use]
+    pub const fn uses_auxiliary_encounters(&self) -> bool {
+        match self {
+            Self::Bc(_) | Self::Sac(_) => false,
+            Self::Apg(settings) => settings.refinement.updates > 0,
+        }
+    }
+
     /// Checks that every setting is in its range.
     ///
     /// # Errors

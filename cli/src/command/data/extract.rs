@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::source::{Source, not_empty};
 use cede_controller::ConflictKind;
-use cede_data::{Dataset, Encounter, Manoeuvre, Role, STEP_MS, Summary, output};
+use cede_data::{Dataset, Encounter, Manoeuvre, Role, Rule, STEP_MS, Summary, output};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -38,8 +38,8 @@ struct EncounterRow<'d> {
     left: u32,
     #[serde(rename = "Reactive_agent_id")]
     other: u32,
-    /// The other vehicle: a left-turner yields to oncoming traffic, and at an all-way
-    /// stop to a vehicle that arrives at the same time.
+    /// The vehicle that goes first by the rules of the road; at an all-way stop if both arrive at once. Where
+    /// no rule decides, the other: a left-turner yields to oncoming traffic.
     #[serde(rename = "Agent_with_right_of_way")]
     right_of_way: u32,
     #[serde(rename = "First_agent_id")]
@@ -54,6 +54,12 @@ struct EncounterRow<'d> {
     left_manoeuvre: Manoeuvre,
     #[serde(rename = "Reactive_manoeuvre")]
     other_manoeuvre: Manoeuvre,
+    #[serde(rename = "Right_of_way_by")]
+    rule: Rule,
+    #[serde(rename = "Ego_control")]
+    left_control: &'static str,
+    #[serde(rename = "Reactive_control")]
+    other_control: &'static str,
     #[serde(rename = "Conflict_x_m")]
     x: String,
     #[serde(rename = "Conflict_y_m")]
@@ -70,7 +76,7 @@ impl<'d> EncounterRow<'d> {
             end_ms: encounter.start_ms + STEP_MS * u64::from(encounter.steps),
             left: encounter.id.left,
             other: encounter.id.other,
-            right_of_way: encounter.id.other,
+            right_of_way: vehicle(encounter.rights.first.unwrap_or(Role::Other)).track,
             first: vehicle(encounter.first).track,
             steps: encounter.steps,
             // The record has steps of 0.1 s.
@@ -83,6 +89,9 @@ impl<'d> EncounterRow<'d> {
             },
             left_manoeuvre: vehicle(Role::Left).manoeuvre,
             other_manoeuvre: vehicle(Role::Other).manoeuvre,
+            rule: encounter.rights.rule,
+            left_control: vehicle(Role::Left).entry.control.name(),
+            other_control: vehicle(Role::Other).entry.control.name(),
             x: format!("{:.3}", encounter.conflict_point.x),
             y: format!("{:.3}", encounter.conflict_point.y),
         }
@@ -91,7 +100,7 @@ impl<'d> EncounterRow<'d> {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let dataset = args.source.load_seeded("--seed", args.seed, 0)?;
+    let dataset = args.source.load_one_seeded("--seed", args.seed, 0)?;
     super::name_passed_over(&dataset);
     not_empty(&dataset)?;
     if let Some(path) = &args.out {

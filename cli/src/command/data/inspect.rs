@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::plural::Count;
 use crate::scene;
 use crate::source::{Source, not_empty};
-use cede_data::{Distribution, Summary};
+use cede_data::{Distribution, RightsSummary, Rule, Summary};
 use std::path::PathBuf;
 
 /// Options of `cede data inspect`.
@@ -35,7 +35,7 @@ fn svg(path: &str) -> Result<PathBuf, &'static str> {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let dataset = args.source.load_seeded("--seed", args.seed, 0)?;
+    let dataset = args.source.load_one_seeded("--seed", args.seed, 0)?;
     super::name_passed_over(&dataset);
     let summary = Summary::of(&dataset);
     scene::write(&args.draw, &dataset)?;
@@ -81,6 +81,7 @@ fn print(summary: &Summary) {
     share("left-turner first", summary.left_first);
     share("left-turner starts at rest", summary.left_starts_at_rest);
     share("other starts at rest", summary.other_starts_at_rest);
+    rights(&summary.rights);
     println!("\n                              mean     min     p10  median     p90     max");
     row("length, s", &summary.length_s);
     row("PET, s", &summary.pet_s);
@@ -89,9 +90,37 @@ fn print(summary: &Summary) {
     row("first distance left, m", &summary.left_distance_m);
     row("first distance other, m", &summary.other_distance_m);
     row("acceleration, m/s²", &summary.acceleration);
+    if summary.limit.n > 0 {
+        row("speed limit, m/s", &summary.limit);
+    }
     row("vehicles around", &summary.bystanders);
     let within = 100.0 * summary.acceleration_within_bounds;
     println!("\naccelerations within ±3 m/s²: {within:.2} %");
+}
+
+/// Who goes first by the rules of the road, and how often that vehicle did.
+fn rights(rights: &[RightsSummary]) {
+    println!(
+        "\nleft-turner    other          rule             goes first  encounters  left-turner was first"
+    );
+    for summary in rights {
+        let RightsSummary { left, other, .. } = summary;
+        let rule = match summary.rule {
+            Rule::Unknown => "not known",
+            Rule::AllWayStop => "all-way stop",
+            Rule::Regulation => "regulation",
+            Rule::MinorRoad => "minor road",
+            Rule::LeftTurn => "left turn",
+            Rule::Right => "right first",
+            Rule::Open => "none",
+        };
+        let percent = 100.0 * summary.left_first as f64 / summary.encounters.max(1) as f64;
+        println!(
+            "{left:<15}{other:<15}{rule:<17}{:<12}{:>10}  {percent:>18.1} %",
+            summary.first.unwrap_or("–"),
+            summary.encounters
+        );
+    }
 }
 
 fn row(name: &str, d: &Distribution) {

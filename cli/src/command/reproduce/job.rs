@@ -20,15 +20,25 @@ use std::sync::Mutex;
 pub(super) struct Job<'d> {
     pub(super) row: RowSettings,
     pub(super) seed: u64,
-    /// In leave-one-file-out, the file that is left out.
-    pub(super) without: Option<u16>,
+    /// In a cross-validation by file, the round.
+    pub(super) round: Option<usize>,
     pub(super) training: Vec<&'d Encounter>,
     /// Auxiliary encounters; the policy is not judged on them.
     pub(super) auxiliary: Vec<&'d Encounter>,
     /// Encounters for the learning curve, in addition to those of the training.
     pub(super) validation: Vec<&'d Encounter>,
-    /// The encounters to judge on, by the name of their selection.
-    pub(super) judged: Vec<(String, Vec<&'d Encounter>)>,
+    /// The encounters to judge on.
+    pub(super) judged: Vec<Judged<'d>>,
+}
+
+/// Encounters to judge on.
+#[derive(Clone)]
+pub(super) struct Judged<'d> {
+    /// Name of their site.
+    pub(super) site: &'d str,
+    /// Name of their selection.
+    pub(super) split: &'static str,
+    pub(super) encounters: Vec<&'d Encounter>,
 }
 
 /// The result of a training.
@@ -73,9 +83,9 @@ pub(super) fn train_all(
 impl Job<'_> {
     /// Name of its files, without extension.
     fn name(&self) -> String {
-        let without = self.without.map(|file| format!("-without-{file}"));
+        let round = self.round.map(|round| format!("-round-{round}"));
         let (row, seed) = (self.row.algorithm.name(), self.seed);
-        format!("{row}-{seed}{}", without.unwrap_or_default())
+        format!("{row}-{seed}{}", round.unwrap_or_default())
     }
 
     fn provenance(&self, identity: &Identity, site: &str) -> Provenance {
@@ -116,7 +126,7 @@ impl Job<'_> {
             return Ok(trained);
         }
         let lessons = Lessons::new(&self.training, &self.auxiliary);
-        let panel = self.without.is_none().then(|| Panel {
+        let panel = self.round.is_none().then(|| Panel {
             train: &lessons.courses,
             validation: self.validation.iter().map(|e| Course::new(e)).collect(),
         });

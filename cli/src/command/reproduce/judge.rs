@@ -33,6 +33,7 @@ pub(super) struct Judged<'d> {
 struct Key<'j> {
     algorithm: Algorithm,
     seed: u64,
+    site: &'j str,
     split: &'j str,
     /// Its name in [`SHIELDS`].
     shield: &'static str,
@@ -42,6 +43,7 @@ impl Key<'_> {
     fn label(&self) -> Label<'_> {
         Label {
             driver: self.algorithm.name(),
+            site: self.site,
             split: self.split,
             mode: "joint",
             until: "conflict",
@@ -50,8 +52,8 @@ impl Key<'_> {
     }
 }
 
-/// Judges the policy of every job with every shield. The files of leave-one-file-out are merged into
-/// one row.
+/// Judges the policy of every job with every shield. The rounds of a cross-validation are merged
+/// into one row.
 ///
 /// # Errors
 /// The user has interrupted the command.
@@ -62,15 +64,16 @@ pub(super) fn policies<'d>(
     let mut all: Vec<(Key<'_>, Vec<Drive<'d>>)> = Vec::new();
     let mut left_out = LeftOut::default();
     for (job, trained) in jobs.iter().zip(trained) {
-        for (split, encounters) in &job.judged {
+        for judged in &job.judged {
             for (shield, contract) in SHIELDS {
                 interrupt::check()?;
-                let driven = drive(trained.policy, contract, encounters, job.seed);
+                let driven = drive(trained.policy, contract, &judged.encounters, job.seed);
                 let drives = left_out.drives(driven);
                 let key = Key {
                     algorithm: job.row.algorithm,
                     seed: job.seed,
-                    split,
+                    site: judged.site,
+                    split: judged.split,
                     shield,
                 };
                 match all.iter_mut().find(|(known, _)| *known == key) {
@@ -111,13 +114,12 @@ fn factory(policy: Policy<'static>, contract: Option<Contract>) -> Box<dyn Drive
 }
 
 /// How the baselines are judged.
-pub(super) fn baselines(dataset: &Dataset, leave_one_file_out: bool) -> Plan {
+pub(super) fn baselines(dataset: &Dataset, held_out: Option<Selection>) -> Plan {
     let splits = splits(dataset).into_iter().map(Selection::Split);
-    let folds = leave_one_file_out.then_some(Selection::LeaveOneFileOut);
     Plan {
         contenders: Baseline::ALL.map(Contender::Baseline).into(),
         lenient: true,
-        selections: splits.chain(folds).collect(),
+        selections: splits.chain(held_out).collect(),
         mode: ModeName::Joint,
         partner: Baseline::Replay,
         until: UntilName::Conflict,

@@ -31,9 +31,9 @@ impl Output<'_> {
         if json {
             println!("{text}");
         } else {
-            print!("{}", summary::render(self.rows, self.site == "EP0"));
+            print!("{}", summary::render(self.rows));
             println!(
-                "report, weights and results of every seed: {}",
+                "reports, weights and results of every seed: {}",
                 folder.display()
             );
         }
@@ -46,7 +46,7 @@ pub(super) fn curves(jobs: &[Job<'_>], trained: &[Trained]) -> Vec<Learned> {
     let whole = jobs
         .iter()
         .zip(trained)
-        .filter(|(job, _)| job.without.is_none());
+        .filter(|(job, _)| job.round.is_none());
     whole
         .map(|(job, trained)| Learned {
             driver: job.row.algorithm.name(),

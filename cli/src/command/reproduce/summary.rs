@@ -15,25 +15,26 @@ pub(super) struct Seeded {
     pub(super) row: TableRow,
 }
 
-/// One table per split and shield, in the order of their first rows; `paper` adds the paper's rows.
-pub(super) fn render(rows: &[Seeded], paper: bool) -> String {
-    let mut blocks: Vec<(&str, &str)> = Vec::new();
+/// One table per site, split and shield, in the order of their first rows, with the paper's rows at its site.
+pub(super) fn render(rows: &[Seeded]) -> String {
+    let block = |row: &'_ TableRow| (row.site.clone(), row.split.clone(), row.shield.clone());
+    let mut blocks = Vec::new();
     for Seeded { row, .. } in rows {
-        if !blocks.contains(&(&row.split, &row.shield)) {
-            blocks.push((&row.split, &row.shield));
+        if !blocks.contains(&block(row)) {
+            blocks.push(block(row));
         }
     }
     // The tables without the shield come first: the paper's protocol.
-    blocks.sort_by_key(|(_, shield)| *shield != "off");
-    let tables = blocks.into_iter().map(|(split, shield)| {
-        let own: Vec<&Seeded> = rows
-            .iter()
-            .filter(|s| (s.row.split.as_str(), s.row.shield.as_str()) == (split, shield))
-            .collect();
+    blocks.sort_by_key(|(_, _, shield)| *shield != "off");
+    let tables = blocks.into_iter().map(|of_table| {
+        let own: Vec<&Seeded> = rows.iter().filter(|s| block(&s.row) == of_table).collect();
+        let (site, split, shield) = of_table;
         let n = own.first().map_or(0, |s| s.row.n);
-        let with_paper = paper && shield == "off";
-        let table = table(&own, if with_paper { split } else { "" });
-        format!("{split}: n = {n}, joint mode, until conflict, shield {shield}\n{table}\n\n")
+        let with_paper = site == "EP0" && shield == "off";
+        let table = table(&own, if with_paper { &split } else { "" });
+        format!(
+            "{site}, {split}: n = {n}, joint mode, until conflict, shield {shield}\n{table}\n\n"
+        )
     });
     let legend = "mean ± standard deviation over seeds [Wilson 95 % interval of one seed's n]; \
                   collisions and time-outs per seed\n\n";

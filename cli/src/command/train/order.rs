@@ -35,21 +35,22 @@ impl Order<'_> {
         }
         let (claims, text) = self.claims(algorithm)?;
         self.options.threads.start()?;
-        let dataset = self
+        let sites = self
             .source
             .load_seeded("--data-seed", self.options.data_seed, DATA_SEED)?;
-        let own: Vec<&Encounter> = dataset.split(Split::Train).collect();
+        let own: Vec<&Encounter> = training(&sites).collect();
         if own.is_empty() {
             return Err(Failure::input(
                 "no encounters in the training files",
                 "add training files to the folder, or name another site",
             ));
         }
-        let every_pair = self.options.every_pair.then(|| dataset.every_pair());
-        let auxiliary = every_pair
-            .iter()
-            .flat_map(|pairs| pairs.split(Split::Train));
-        let auxiliary: Vec<&Encounter> = auxiliary.collect();
+        let pairs: Vec<Dataset> = if self.options.every_pair {
+            sites.iter().map(Dataset::every_pair).collect()
+        } else {
+            Vec::new()
+        };
+        let auxiliary: Vec<&Encounter> = training(&pairs).collect();
         let encounters = || own.iter().chain(&auxiliary).copied();
         let hash = data_hash(encounters(), &text);
         let lessons = Lessons {
@@ -63,7 +64,7 @@ impl Order<'_> {
             settings,
         };
         let provenance = provenance::of(self, &identity, encounters().count());
-        let mut training = self.begin(identity, &lessons, self.panel(&dataset, &lessons))?;
+        let mut training = self.begin(identity, &lessons, self.panel(&sites, &lessons))?;
         self.advance(&mut training, &lessons)?;
         self.write(&training.run, &provenance)?;
         training.clean();
@@ -97,10 +98,14 @@ impl Order<'_> {
     }
 
     /// The encounters for the learning curve; `None` without `--log`.
-    fn panel<'e>(&self, dataset: &'e Dataset, lessons: &'e Lessons<'e>) -> Option<Panel<'e>> {
+    fn panel<'e>(&self, sites: &'e [Dataset], lessons: &'e Lessons<'e>) -> Option<Panel<'e>> {
         self.options.log.as_ref().map(|_| Panel {
             train: &lessons.courses,
-            validation: dataset.split(Split::Validation).map(Course::new).collect(),
+            validation: sites
+                .iter()
+                .flat_map(|site| site.split(Split::Validation))
+                .map(Course::new)
+                .collect(),
         })
     }
 
@@ -154,6 +159,11 @@ impl Order<'_> {
         println!("{}", self.out.display());
         Ok(())
     }
+}
+
+/// The encounters of the training files of all `sites`.
+fn training(sites: &[Dataset]) -> impl Iterator<Item = &Encounter> {
+    sites.iter().flat_map(|site| site.split(Split::Train))
 }
 
 /// The scalars of a point of the curve.

@@ -15,8 +15,8 @@ pub(super) fn of(order: &Order<'_>, identity: &Identity, encounters: usize) -> P
         command += &format!(" --data synthetic --encounters {least} --data-seed {seed}");
         format!("synthetic, seed {seed}")
     } else {
-        command += &format!(" --data DIR --site {}", source.site());
-        format!("recordings of {}", source.site())
+        command += &format!(" --data DIR --site {}", source.sites());
+        format!("recordings of {}", source.sites())
     };
     if options.every_pair {
         command += " --every-pair";

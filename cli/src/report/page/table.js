@@ -74,6 +74,7 @@ const DRIVERS = {
   human: "a model of a driver that yields by time gaps",
   logistic: "a logistic regression on the initial state decides who goes first",
   idm: "the intelligent driver model",
+  "rule-of-the-road": "who has the right of way by the map goes first",
   "nearer-first": "who is nearer to the conflict goes first",
   "mean-speed": "everybody drives at the mean speed of the training split",
   "initial-speed": "everybody keeps the speed at the beginning",
@@ -89,7 +90,7 @@ const SUMMARY = [
 // One row a driver, without the shield beside behind it, for the first protocol of the page. Nothing, where all rows have one shield.
 function summary(host, { rows }) {
   const first = rows[0];
-  const same = rows.filter((r) => ["split", "mode", "until"].every((key) => r[key] === first[key]));
+  const same = rows.filter((r) => ["site", "split", "mode", "until"].every((key) => r[key] === first[key]));
   const shields = [...new Set(same.map((r) => r.shield))].slice(0, 2);
   const names = [...new Set(same.map((r) => r.driver))];
   const order = Object.keys(DRIVERS);

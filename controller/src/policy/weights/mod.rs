@@ -271,7 +271,7 @@ mod tests {
         assert_eq!(forged(0, 1), WeightsError::Magic);
         assert_eq!(forged(1, 1), WeightsError::Unknown);
         assert_eq!(forged(1, 3), WeightsError::Unknown);
-        assert_eq!(forged(2, 4), WeightsError::Unknown);
+        assert_eq!(forged(2, 5), WeightsError::Unknown);
         assert_eq!(forged(3, 2), WeightsError::Unknown);
         for width in [0, 15, 17, 32, 144, u32::MAX] {
             assert_eq!(forged(5, width), WeightsError::Shape);

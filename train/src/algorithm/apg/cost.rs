@@ -20,6 +20,10 @@ pub struct Cost {
     /// Weight of a wrong order of arrival: the distance (m) that the recorded first vehicle has left to
     /// its conflict point, times the distance (m) by which the second is too close to its own.
     pub order: f32,
+    /// Weight of a late first arrival: from the recorded end on, the distance (m) that the recorded first
+    /// vehicle has left to its conflict point.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub late: f32,
     /// Weight of the squared shortfall of the distance between the footprints.
     pub contact: f32,
     /// Distance (m) between the footprints below which it counts as too short.
@@ -33,10 +37,15 @@ impl Default for Cost {
             speed: 0.3,
             expectation: 0.02,
             order: 10.0,
+            late: 0.0,
             contact: 20.0,
             gap: 0.5,
         }
     }
+}
+
+fn is_zero(weight: &f32) -> bool {
+    *weight == 0.0
 }
 
 /// Distance (m) that the second vehicle should keep to its conflict point until the first arrives, and
@@ -63,6 +72,7 @@ impl Cost {
         let mut own = ByStates::default();
         let total = self.imitation(encounter, step, states, &mut own)
             + self.disorder(encounter, step, states, &mut own)
+            + self.lateness(encounter, step, states, &mut own)
             + self.closeness(encounter, states, &mut own);
         for (by, own) in by.iter_mut().flatten().zip(own.iter().flatten()) {
             *by += share * own;
@@ -121,6 +131,24 @@ impl Cost {
         self.order * counted * near
     }
 
+    /// The distance that the vehicle that was first in the record still has to go after the recorded end.
+    fn lateness(
+        &self,
+        encounter: &Encounter,
+        step: usize,
+        states: [State; 2],
+        by: &mut ByStates,
+    ) -> f32 {
+        let end = encounter.steps as usize;
+        let first = encounter.first as usize;
+        let late = encounter.participants[first].conflict_s - states[first].s;
+        if self.late == 0.0 || !(end..=end + ORDER_OVERTIME).contains(&step) || late <= 0.0 {
+            return 0.0;
+        }
+        by[first][0] -= self.late;
+        self.late * late
+    }
+
     /// The distance between the footprints, where it is too short.
     fn closeness(&self, encounter: &Encounter, states: [State; 2], by: &mut ByStates) -> f32 {
         let area = |i: usize, ds: f32| {
@@ -142,5 +170,39 @@ impl Cost {
             by[i][0] -= self.contact * 2.0 * short * slopes[i] / (2.0 * h);
         }
         self.contact * short * short
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cede_data::Dataset;
+
+    #[test]
+    fn after_the_recorded_end_what_the_first_has_left_costs() {
+        let dataset = Dataset::synthetic(3, 1);
+        let encounter = &dataset.encounters[0];
+        let (end, first) = (encounter.steps as usize, encounter.first as usize);
+        let states = [0, 1].map(|i| State {
+            s: encounter.participants[i].conflict_s - 4.0,
+            v: 1.0,
+        });
+        let more = |step: usize| {
+            let [without, with] = [0.0, 3.0].map(|late| {
+                let cost = Cost {
+                    late,
+                    ..Cost::default()
+                };
+                let mut by = ByStates::default();
+                (cost.of(encounter, step, states, 0.5, &mut by), by)
+            });
+            (with.0 - without.0, with.1[first][0] - without.1[first][0])
+        };
+        let close = |(cost, slope): (f32, f32), expected: (f32, f32)| {
+            (cost - expected.0).abs() < 1e-3 && (slope - expected.1).abs() < 1e-3
+        };
+        assert!(close(more(end - 1), (0.0, 0.0)));
+        assert!(close(more(end), (12.0, -1.5)), "{:?}", more(end));
+        assert!(close(more(end + ORDER_OVERTIME + 1), (0.0, 0.0)));
     }
 }

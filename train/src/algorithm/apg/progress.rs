@@ -2,7 +2,7 @@
 
 use crate::algorithm::apg::claims::AdversarialStates;
 use crate::algorithm::apg::closed_loop::Start;
-use crate::algorithm::apg::settings::ApgSettings;
+use crate::algorithm::apg::settings::{ApgSettings, as_text};
 use crate::driving::inputs::Inputs;
 use crate::nn::adam::Adam;
 use crate::nn::network::Network;
@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 /// The state of a run between two updates; a checkpoint stores it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ApgProgress {
+    #[serde(with = "as_text")]
     pub(super) settings: ApgSettings,
     pub(super) inputs: Inputs,
     /// The network in training.

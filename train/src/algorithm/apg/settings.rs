@@ -156,3 +156,26 @@ impl ApgSettings {
         }
     }
 }
+
+/// Settings within a checkpoint: as TOML, because settings at their defaults may be left out, and the
+/// checkpoint's own encoding has no names.
+pub(super) mod as_text {
+    use super::ApgSettings;
+    use serde::de::Error as _;
+    use serde::ser::Error as _;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub(in crate::algorithm::apg) fn serialize<S: Serializer>(
+        settings: &ApgSettings,
+        to: S,
+    ) -> Result<S::Ok, S::Error> {
+        let text = toml::to_string(settings).map_err(S::Error::custom)?;
+        text.serialize(to)
+    }
+
+    pub(in crate::algorithm::apg) fn deserialize<'d, D: Deserializer<'d>>(
+        from: D,
+    ) -> Result<ApgSettings, D::Error> {
+        toml::from_str(&String::deserialize(from)?).map_err(D::Error::custom)
+    }
+}
