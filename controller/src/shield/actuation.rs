@@ -146,6 +146,7 @@ struct Flight {
 
 impl Flight {
     /// What it may lead to: the least and the largest acceleration, in m/s².
+    #[inline(never)] // Once in flash.
     fn bounds(self, contract: &Contract) -> [f32; 2] {
         if self.command.is_nan() {
             anything(contract)
@@ -259,6 +260,7 @@ impl Commands {
 }
 
 /// Everything that can be commanded may lead to this (m/s²): the least and the most.
+#[inline(never)] // Once in flash.
 pub(super) fn anything(contract: &Contract) -> [f32; 2] {
     let ego = contract.ego;
     [
