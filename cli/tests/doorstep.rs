@@ -121,7 +121,7 @@ fn nothing_to_do_is_a_failure() {
     }
     let failed = cede("evaluate --data synthetic --encounters 20 --split test").code(3);
     assert!(
-        stderr(&failed).contains("no encounters in `test`"),
+        stderr(&failed).contains("no encounters of synthetic in `test`"),
         "{}",
         stderr(&failed)
     );
