@@ -289,7 +289,7 @@ mod tests {
 
     #[test]
     fn a_mend_that_is_not_enough_names_the_other_number() {
-        let vehicle = Vehicle::new(Footprint::PAPER).latency(0.3);
+        let vehicle = Vehicle::new(Footprint::PAPER).latency(1.2);
         let bold = vehicle.bolder(&Contract::WORST_CASE);
         let error = bold[0].mend(&Contract::WORST_CASE).unwrap_err();
         assert_eq!(error.field(), "latency");

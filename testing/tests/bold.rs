@@ -63,15 +63,15 @@ fn the_case_that_shows_it_has_two_vehicles_at_most() {
 fn a_latency_that_the_vehicle_exceeds_names_the_period_too() {
     let report = report(
         Contract::WORST_CASE,
-        Vehicle::new(Footprint::PAPER).latency(0.6),
+        Vehicle::new(Footprint::PAPER).latency(1.2),
     );
     let (_, mend) = said(&report, "contract-fits-vehicle");
     assert!(
-        mend.starts_with("change latency in the contract from 0.1 to 0.6"),
+        mend.starts_with("change latency in the contract from 0.1 to 1.2"),
         "{mend}"
     );
     assert!(
-        mend.contains("change as well: latency = 0.6 is outside [0, 0.1]"),
+        mend.contains("change as well: latency = 1.2 is outside [0, 1]"),
         "{mend}"
     );
 }

@@ -132,9 +132,17 @@ fn e11_contracts_outside_of_the_theorem_are_refused() {
         ("ego.max_speed", worst().ego_max_speed(16.0).build()),
         ("ego.max_speed", worst().ego_max_speed(30.0).build()),
         ("slack", worst().slack(0.0).build()),
-        ("latency", worst().latency(0.11).build()),
-        ("latency", worst().jitter(0.01).build()),
-        ("jitter", worst().latency(0.0).jitter(0.02).build()),
+        ("latency", worst().latency(1.01).build()),
+        ("latency", worst().latency(0.95).jitter(0.01).build()),
+        ("jitter", worst().latency(0.0).jitter(0.04).build()),
+        (
+            "jitter",
+            Contract::ALL_WAY_STOP
+                .to_builder()
+                .latency(0.0)
+                .jitter(0.02)
+                .build(),
+        ),
     ];
     for (field, built) in refused {
         let said = built.unwrap_err().to_string();
