@@ -73,11 +73,11 @@ fn bad_files_are_named_with_field_and_value() {
     let wrong = file(
         folder.path(),
         "c.json",
-        &json.replace("\"latency\": 0.1", "\"latency\": 0.2"),
+        &json.replace("\"latency\": 0.1", "\"latency\": 1.2"),
     );
     refuse(
         &["--contract", &wrong],
-        &["c.json", "latency = 0.2 is outside [0, 0.1]"],
+        &["c.json", "latency = 1.2 is outside [0, 1]"],
     );
     let unknown = file(folder.path(), "d.toml", "perod = 1.0");
     refuse(&["--contract", &unknown], &["d.toml", "perod"]);
