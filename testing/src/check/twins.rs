@@ -233,15 +233,11 @@ pub(super) fn replacing<R: Rules + Clone>(context: &Context<'_>, id: &'static st
             twin.set_policy(subject.policy);
             twin.set_contract(subject.contract).map_err(Miss::broken)?;
         }
-        let decision = twin.decide(call.seen, call.proposal);
+        let mut decision = twin.decide(call.seen, call.proposal);
         // Who is not seen coasts on in two steps instead of one: the margin may be rounded otherwise.
-        let rounded = (decision.margin - call.decision.margin).abs() <= ROUNDING;
-        let margin = if rounded {
-            call.decision.margin
-        } else {
-            decision.margin
-        };
-        let decision = Decision { margin, ..decision };
+        if (decision.margin - call.decision.margin).abs() <= ROUNDING {
+            decision.margin = call.decision.margin;
+        }
         same(call, call.decision, &decision)
     })
 }
