@@ -43,12 +43,12 @@ impl<R: Real> Inherited<R> {
     #[must_use]
     pub fn all(contract: &Contract, bounds: [R; 2]) -> Self {
         let mut all = Self { parts: Vec::new() };
-        all.from_the_end(contract.response(), bounds);
+        all.prepend(contract.response(), bounds);
         all
     }
 
     /// Until `end` (s from now), before all parts that are known, accelerations between `bounds` (m/s²).
-    fn from_the_end(&mut self, end: f32, bounds: [R; 2]) {
+    fn prepend(&mut self, end: f32, bounds: [R; 2]) {
         if end > 0.0 || end.is_nan() {
             // `PARTS` are enough.
             let _ = self.parts.push((end, bounds));
@@ -252,9 +252,9 @@ impl Commands {
         let mut inherited = Inherited { parts: Vec::new() };
         self.acting(contract, short(now), |end, of| {
             bounds = hull(bounds, of);
-            inherited.from_the_end(end + lag, bounds);
+            inherited.prepend(end + lag, bounds);
         });
-        inherited.from_the_end(lag, hull(bounds, self.has(contract, now)));
+        inherited.prepend(lag, hull(bounds, self.has(contract, now)));
         inherited
     }
 }
