@@ -3,7 +3,8 @@
 use cede_controller::kinematics::State;
 use cede_controller::policy::features::normalised;
 use cede_controller::{
-    ConflictKind, Control, FeatureSet, Footprint, Pair, Part, Pose, RightOfWay, UnitVector, VehicleState,
+    ConflictKind, Control, FeatureSet, Footprint, Pair, Part, Pose, RightOfWay, UnitVector,
+    VehicleState,
 };
 use cede_data::Encounter;
 use cede_sim::ObservationModel;
