@@ -45,7 +45,8 @@ def evaluate(
             takes a `cede.View` and returns an acceleration (m/s²), or a list of these.
         data: As in `cede.data.open_dataset`.
         site: Site of the recordings.
-        split: `"train"`, `"validation"`, `"test"`, `"all"`, `"leave-one-file-out"` or `"seven-fold"`.
+        split: `"train"`, `"validation"`, `"test"`, `"all"`, `"leave-one-file-out"` or
+            `"seven-fold"`.
         mode: `"joint"` drives both vehicles, `"ego"` one of them in either role.
         until: `"conflict"`, the paper's protocol, or `"cleared"`.
         partner: In ego mode, the driver of the other vehicle.
