@@ -102,7 +102,7 @@ def test_a_contract_from_a_file(tmp_path):
     file.write_text(cede.Contract().to_toml())
     assert cede.Contract.load(file) == cede.Contract()
     file.write_text(cede.Contract().to_toml().replace("jitter = 0.0", "jitter = 9.0"))
-    with pytest.raises(cede.Error, match=r"contract\.toml.*jitter = 9 is outside \[0, 0\.0125\]"):
+    with pytest.raises(cede.Error, match=r"contract\.toml.*jitter = 9 is outside \[0, 0\.035\]"):
         cede.Contract.load(file)
     with pytest.raises(cede.Error, match="missing.toml"):
         cede.Contract.load(tmp_path / "missing.toml")
