@@ -1,9 +1,12 @@
 //! `cede play`: the page, served and written, and opened in a browser where there is one.
 
+mod chromium;
+
+use chromium::{browser, open};
 use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
 const MOST_BYTES: u64 = 1_000_000;
@@ -169,43 +172,6 @@ fn options_that_would_be_ignored_are_refused() {
     cede(&["play", "--port", "70000"]).code(2);
 }
 
-fn browser() -> Option<PathBuf> {
-    let names = ["chromium", "chromium-browser", "google-chrome"];
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    let found = std::env::split_paths(&path)
-        .flat_map(|folder| names.map(|name| folder.join(name)))
-        .find(|candidate| candidate.is_file());
-    if found.is_none() {
-        cede_tests::skip("Chromium");
-    }
-    found
-}
-
-/// The page's elements after its scripts have run.
-fn open(browser: &Path, folder: &Path) -> String {
-    let profile = tempfile::tempdir().unwrap();
-    let output = Command::new(browser)
-        .args([
-            "--headless",
-            "--no-sandbox",
-            "--disable-gpu",
-            "--disable-background-networking",
-        ])
-        .arg(format!("--user-data-dir={}", profile.path().display()))
-        .args([
-            "--virtual-time-budget=5000",
-            "--window-size=1280,2400",
-            "--dump-dom",
-        ])
-        .arg(format!(
-            "file://{}/index.html#site=ring&at=3",
-            folder.display()
-        ))
-        .output()
-        .unwrap();
-    String::from_utf8(output.stdout).unwrap()
-}
-
 /// The element that begins with `begin`.
 fn part<'p>(page: &'p str, begin: &str, end: &str) -> &'p str {
     let from = page.find(begin).unwrap_or_else(|| panic!("no {begin}"));
@@ -213,11 +179,16 @@ fn part<'p>(page: &'p str, begin: &str, end: &str) -> &'p str {
     &page[from..from + length]
 }
 
+/// The page in `folder`, at a moment at which the shield has acted.
+fn playground(folder: &Path) -> String {
+    format!("file://{}/index.html#site=ring&at=3", folder.display())
+}
+
 #[test]
 fn the_page_drives_from_the_disk_without_an_error() {
     let Some(browser) = browser() else { return };
     let folder = written();
-    let dom = open(&browser, folder.path());
+    let dom = open(&browser, &playground(folder.path()));
     let root = part(&dom, "<html", ">");
     assert!(
         root.contains("data-status=\"ready\"") && !root.contains("data-error"),
@@ -227,6 +198,6 @@ fn the_page_drives_from_the_disk_without_an_error() {
 
     // A test that cannot fail says nothing: without its controller the page tells it.
     std::fs::write(folder.path().join("module.js"), "const CEDE_MODULE = \"\";").unwrap();
-    let dom = open(&browser, folder.path());
+    let dom = open(&browser, &playground(folder.path()));
     assert!(part(&dom, "<html", ">").contains("data-error"));
 }

@@ -271,7 +271,7 @@ pub(super) fn anything(contract: &Contract) -> [f32; 2] {
 
 /// Bounds on the acceleration (m/s²) of a drivetrain that had one in `acting` `elapsed` seconds ago, and has followed
 /// others in `followed` since.
-pub(super) fn follow(
+fn follow(
     contract: &Contract,
     [least, most]: [f32; 2],
     followed: [f32; 2],

@@ -1,6 +1,7 @@
 //! What the shield remembers of the ego from one decision to the next: its plan, its commands, where it was.
 
 use super::actuation::{Commands, Inherited, anything};
+use super::bounds::Bounds;
 use super::contract::Contract;
 use super::margin;
 use super::own::Own;
@@ -20,21 +21,13 @@ struct Remembered {
     calls: u32,
 }
 
-/// Bounds on the ego's motion: what every observation says, carried on by what its commands lead to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Known {
-    /// Arc length in m.
-    s: Span,
-    /// Speed in m/s.
-    speed: Span,
-}
-
 /// The plan that was verified last, the commands given, and where the ego was.
 #[derive(Clone, Debug)]
 pub(crate) struct Memory {
     remembered: Option<Remembered>,
     commands: Commands,
-    last: Option<(Known, Instant)>,
+    /// Where the ego was seen last: what every observation says, carried on by what its commands lead to; and when.
+    last: Option<(Bounds, Instant)>,
     /// Arc length (m), at least, of the ego when it was seen last.
     least: f32,
     /// Calls since `last`.
@@ -120,10 +113,7 @@ impl Memory {
 
     /// Notes where the ego is at `now`; and whether its commands can have brought it there.
     pub(crate) fn note(&mut self, contract: &Contract, ego: &Vehicle, now: Instant) -> (Own, bool) {
-        let seen = Known {
-            s: around(ego.s, contract.position_error),
-            speed: around(ego.speed, contract.speed_error),
-        };
+        let seen = Bounds::sensed(contract, ego.s, ego.speed);
         let expected = self.expected(contract, now);
         let common = expected.map(|expected| both(contract, expected, seen));
         let possible = !matches!(common, Some(None));
@@ -136,7 +126,7 @@ impl Memory {
 
     /// Where the ego may be at `now`, and how fast, by when it was seen before.
     #[inline(never)] // Once in flash.
-    fn expected(&self, contract: &Contract, now: Instant) -> Option<Known> {
+    fn expected(&self, contract: &Contract, now: Instant) -> Option<Bounds> {
         let (last, at) = self.last?;
         let time = now.seconds_since(at);
         let [least, most] = self.accelerations(contract);
@@ -144,7 +134,7 @@ impl Memory {
         let slow = Reach::start(last.speed.from).fading(cap, margin::fade::<f32>(contract) * time);
         let least = slow.at_least(least, cap, time);
         let most = Reach::start(last.speed.to).at_most(most, time);
-        Some(Known {
+        Some(Bounds {
             s: Span {
                 from: last.s.from + least.distance,
                 to: last.s.to + most.distance,
@@ -172,15 +162,8 @@ impl Memory {
     }
 }
 
-fn around(value: f32, error: f32) -> Span {
-    Span {
-        from: value - error,
-        to: value + error,
-    }
-}
-
 /// What is in both; nothing, if that is empty by more than rounding.
-fn both(contract: &Contract, expected: Known, seen: Known) -> Option<Known> {
+fn both(contract: &Contract, expected: Bounds, seen: Bounds) -> Option<Bounds> {
     let common = |a: Span, b: Span| {
         let from = if a.from > b.from { a.from } else { b.from };
         let to = if a.to < b.to { a.to } else { b.to };
@@ -190,7 +173,7 @@ fn both(contract: &Contract, expected: Known, seen: Known) -> Option<Known> {
         };
         (from <= to + contract.slack).then_some(rounded)
     };
-    Some(Known {
+    Some(Bounds {
         s: common(expected.s, seen.s)?,
         speed: common(expected.speed, seen.speed)?,
     })

@@ -20,8 +20,7 @@ pub fn fits(
     other: State,
     areas: &[Area],
 ) -> bool {
-    let response = numbers.latency + 4.0 * numbers.jitter + numbers.drivetrain.lag;
-    let late = numbers.period + response;
+    let late = numbers.period + numbers.response();
     let plan = f64::from(go) * numbers.period;
     let spare = SPARE + 6.0 * numbers.position_error;
     let error = 2.0 * numbers.speed_error;

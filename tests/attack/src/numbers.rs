@@ -123,6 +123,12 @@ impl Numbers {
         }
     }
 
+    /// Seconds until a command is certainly followed.
+    #[must_use]
+    pub fn response(&self) -> f64 {
+        self.latency + 4.0 * self.jitter + self.drivetrain.lag
+    }
+
     /// The distance that one at `v` needs to stop behind an ego at `ego_v`, after having accelerated for the whole of
     /// its reaction time, however hard the ego brakes within its means (responsibility-sensitive safety).
     #[must_use]

@@ -292,6 +292,9 @@ impl<'s, R: Rules + Clone> World<'s, R> {
                 Mind::Waiting(_, human) => {
                     let ego = self.numbers.ego;
                     let wanted = human.wanted().clamp(-ego.braking, ego.acceleration);
+                    // What it does acts on until the shield's first command is followed: others fear no more speed.
+                    let room = (ego.speed - self.bodies[i].state.v).max(0.0);
+                    let wanted = wanted.min(room / (TICK + self.numbers.response()));
                     self.humanly(i, tick, wanted)
                 }
             };

@@ -16,7 +16,8 @@ const REASONS = {
 // A driver has one hue, behind the shield too.
 const bare = (name) => name.replace(/ \+ shield.*$/, "");
 function colours(names) {
-  const bares = [...new Set(names.map(bare))];
+  // Cede first, so that its hue does not depend on who else is there.
+  const bares = [...new Set(["cede", ...names.map(bare)])];
   return new Map(names.map((name) => [name, PALETTE[bares.indexOf(bare(name)) % PALETTE.length]]));
 }
 const dashes = (name) => (bare(name) === name ? "none" : "7 3");
@@ -186,14 +187,15 @@ function player(report) {
     return drives.findLast((d) => d.driver.startsWith("cede")) ?? drives.findLast((d) => d.driver !== "replay") ?? drives[0];
   }
 
-  // Whether the traffic around comes as near as to touch.
+  // Whether the traffic around comes as near as to touch: by circles along both vehicles.
   function meets(c, driven) {
+    const along = ({ x, y, heading }, length) => [-0.4, 0, 0.4].map((f) => [x + f * length * Math.cos(heading), y + f * length * Math.sin(heading)]);
     return c.around.some(({ appears, route, s, size }) => s.some((at, i) => {
-      const place = pose(route, at);
+      const k = appears + i;
       return c.vehicles.some((v, j) => {
-        const own = driven.s[j][Math.min(appears + i, driven.s[j].length - 1)];
-        const { x, y } = pose(v.route, own);
-        return Math.hypot(place.x - x, place.y - y) < 0.5 * (size[0] + PAPER_SIZE[1]);
+        if (k >= driven.s[j].length) return false;
+        const own = along(pose(v.route, driven.s[j][k]), PAPER_SIZE[0]);
+        return along(pose(route, at), size[0]).some(([x, y]) => own.some(([a, b]) => Math.hypot(x - a, y - b) < PAPER_SIZE[1]));
       });
     }));
   }
@@ -351,7 +353,9 @@ function player(report) {
     return 4 * Number(!meets(c, driven)) + 2 * Number(acts) + Number(driven.first === c.record.first);
   };
   const best = Math.max(...report.cases.map(telling));
-  caseSelect.value = report.cases.findIndex((c) => telling(c) === best);
+  // `#case=2` links to the third.
+  const linked = Number(/case=(\d+)/.exec(location.hash)?.[1] ?? NaN);
+  caseSelect.value = linked in report.cases ? linked : report.cases.findIndex((c) => telling(c) === best);
   choose();
   const still = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
   if (still) {

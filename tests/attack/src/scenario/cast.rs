@@ -141,7 +141,8 @@ impl Cast {
         let any = rng.within(-ego.braking, ego.acceleration);
         let acceleration = rng.pick(&[0.0, -ego.braking, ego.acceleration, any]);
         // One that others fear keeps their bound on speed, before its shield does, too.
-        let fast = start.v + 0.5 * acceleration.max(0.0) > numbers.ego.speed;
+        let late = numbers.response().max(0.5);
+        let fast = start.v + late * acceleration.max(0.0) > numbers.ego.speed;
         Car {
             lane,
             start,
