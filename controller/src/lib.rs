@@ -106,7 +106,7 @@ pub use geometry::{Footprint, Point, Pose, UnitVector, Vector};
 pub use instant::Instant;
 pub use junction::{
     CONFLICT_RADIUS, Class, ConflictKind, Control, Junction, JunctionBuilder, JunctionError,
-    MAX_OTHERS, Path, PathId, Polyline, RightOfWay, Route, RouteConflict, RouteError, Span, Way,
+    MAX_OTHERS, Path, PathId, Polyline, Priority, RightOfWay, Route, RouteConflict, RouteError, Span, Way,
     Zone,
 };
 pub use observation::{Candidate, MAX_CANDIDATES, Observation, Track, Vehicle};

@@ -3,8 +3,8 @@
 use crate::error::{error, named};
 use crate::observation::Vehicle;
 use cede_controller::{
-    Class, ConflictKind, Footprint, Junction as Prepared, JunctionError, PathId, Point, Polyline,
-    RightOfWay, Route, RouteConflict, Span, Way,
+    Class, ConflictKind, Control, Footprint, Junction as Prepared, JunctionError, PathId, Point,
+    Polyline, Priority, RightOfWay, Route, RouteConflict, Span, Way,
 };
 use numpy::{AllowTypeChange, PyArray2, PyArrayLike2};
 use pyo3::prelude::*;
@@ -20,6 +20,20 @@ const CLASSES: [(&str, Class); 3] = [
     ("car", Class::Car),
     ("lorry", Class::Lorry),
     ("bicycle", Class::Bicycle),
+];
+
+const CONTROLS: [(&str, Control); 5] = [
+    ("unknown", Control::Unknown),
+    ("free", Control::Free),
+    ("yield", Control::Yield),
+    ("stop", Control::Stop),
+    ("all-way-stop", Control::AllWayStop),
+];
+
+const PRIORITIES: [(&str, Priority); 3] = [
+    ("first-come", Priority::FirstCome),
+    ("unsigned", Priority::Unsigned),
+    ("signed", Priority::Signed),
 ];
 
 pub(crate) fn class_named(name: &str) -> PyResult<Class> {
@@ -67,6 +81,7 @@ struct Draft {
     class: Class,
     footprint: Footprint,
     line: Option<f32>,
+    control: Control,
 }
 
 /// Collects what a junction is built from. A call that raises changes nothing.
@@ -74,7 +89,7 @@ struct Draft {
 pub(crate) struct Builder {
     tolerance: f32,
     paths: Vec<Draft>,
-    rights: Vec<(PathId, PathId)>,
+    rights: Vec<(PathId, PathId, Priority)>,
 }
 
 #[pymethods]
@@ -90,7 +105,7 @@ impl Builder {
     }
 
     /// Adds a path along `points`, an array of shape (n, 2) or a list of pairs, in metres.
-    #[pyo3(signature = (points, *, kind = "car", length = 5.0, width = 2.0, line = None))]
+    #[pyo3(signature = (points, *, kind = "car", length = 5.0, width = 2.0, line = None, control = "unknown"))]
     fn path(
         &mut self,
         points: PyArrayLike2<'_, f64, AllowTypeChange>,
@@ -98,6 +113,7 @@ impl Builder {
         length: f32,
         width: f32,
         line: Option<f32>,
+        control: &str,
     ) -> PyResult<u8> {
         let points = points.as_array();
         if points.ncols() != 2 {
@@ -114,7 +130,9 @@ impl Builder {
                 self.paths.len()
             ))
         })?;
-        self.push(Ok(Box::new(route)), kind, Footprint { length, width }, line)
+        let control = named("control", control, &CONTROLS)?;
+        let footprint = Footprint { length, width };
+        self.push(Ok(Box::new(route)), kind, footprint, line, control)
     }
 
     /// Adds a path along the points of path `of`, for another class of vehicles.
@@ -127,17 +145,19 @@ impl Builder {
         width: f32,
         line: Option<f32>,
     ) -> PyResult<u8> {
-        self.push(
-            Err(self.known(of)?),
-            kind,
-            Footprint { length, width },
-            line,
-        )
+        let of = self.known(of)?;
+        let control = self
+            .paths
+            .get(of.index())
+            .map_or(Control::Unknown, |path| path.control);
+        self.push(Err(of), kind, Footprint { length, width }, line, control)
     }
 
-    /// Says that vehicles of path `first` go before those of path `second` if they arrive at once.
-    fn right_of_way(&mut self, first: u8, second: u8) -> PyResult<()> {
-        let rights = (self.known(first)?, self.known(second)?);
+    /// Says that vehicles of path `first` have the right of way over those of path `second`, and when it counts.
+    #[pyo3(signature = (first, second, priority = "first-come"))]
+    fn right_of_way(&mut self, first: u8, second: u8, priority: &str) -> PyResult<()> {
+        let priority = named("priority", priority, &PRIORITIES)?;
+        let rights = (self.known(first)?, self.known(second)?, priority);
         self.rights.push(rights);
         Ok(())
     }
@@ -155,6 +175,7 @@ impl Builder {
         kind: &str,
         footprint: Footprint,
         line: Option<f32>,
+        control: Control,
     ) -> PyResult<u8> {
         let class = class_named(kind)?;
         let number = u8::try_from(self.paths.len()).map_err(|_| error("more than 256 paths"))?;
@@ -163,6 +184,7 @@ impl Builder {
             class,
             footprint,
             line,
+            control,
         });
         Ok(number)
     }
@@ -214,9 +236,10 @@ impl Builder {
             if let Some(s) = draft.line {
                 builder.line(id, s)?;
             }
+            builder.control(id, draft.control)?;
         }
-        for &(first, second) in &self.rights {
-            builder.right_of_way(first, second)?;
+        for &(first, second, priority) in &self.rights {
+            builder.priority(first, second, priority)?;
         }
         builder.build().map(Box::new)
     }

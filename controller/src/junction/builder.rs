@@ -1,7 +1,7 @@
 //! Builds a junction from routes, footprints, lines and rights of way.
 
 use crate::geometry::{Footprint, Point, length};
-use crate::junction::conflict::{ConflictKind, RightOfWay, RouteConflict};
+use crate::junction::conflict::{ConflictKind, Priority, RightOfWay, RouteConflict};
 use crate::junction::control::Control;
 use crate::junction::error::JunctionError;
 use crate::junction::meeting::within;
@@ -92,6 +92,7 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
             footprint,
             exit: route.pose(route.length()).direction,
             line: 0.0,
+            waits_at_line: false,
             control: Control::Unknown,
             range: start..end,
         })?;
@@ -119,7 +120,8 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
         Ok(id)
     }
 
-    /// Sets the line of `path`: the arc length `s` (m) of the footprint's centre while the vehicle waits there.
+    /// Sets the line of `path`: the arc length `s` (m) of the footprint's centre while the vehicle waits there. An ego
+    /// that has not passed it does so only with a plan that clears every zone of a crossing or a merge.
     ///
     /// Unless it is set, the line is where the footprint comes to the first zone of kind
     /// [`ConflictKind::Crossing`] or [`ConflictKind::Merging`] with any other path; the end of the path
@@ -162,6 +164,21 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
     /// # Errors
     /// [`JunctionError::UnknownPath`]; [`JunctionError::RightOfWay`] if it is one path.
     pub fn right_of_way(&mut self, first: PathId, second: PathId) -> Result<(), JunctionError> {
+        self.priority(first, second, Priority::FirstCome)
+    }
+
+    /// Says that vehicles of path `first` have the right of way over those of path `second`, and when it counts.
+    ///
+    /// The last call for two paths counts.
+    ///
+    /// # Errors
+    /// [`JunctionError::UnknownPath`]; [`JunctionError::RightOfWay`] if it is one path.
+    pub fn priority(
+        &mut self,
+        first: PathId,
+        second: PathId,
+        priority: Priority,
+    ) -> Result<(), JunctionError> {
         self.known(first)?;
         self.known(second)?;
         if first == second {
@@ -169,7 +186,7 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
         }
         let mut set = |ego: PathId, other: PathId, right_of_way| {
             if let Some(conflict) = self.slot(ego.index(), other.index()) {
-                conflict.right_of_way = right_of_way;
+                (conflict.right_of_way, conflict.priority) = (right_of_way, priority);
             }
         };
         set(first, second, RightOfWay::Ego);
@@ -273,9 +290,10 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
 
     fn store(&mut self, ego: usize, other: usize, conflict: impl Fn() -> RouteConflict) {
         if let Some(slot) = self.slot(ego, other) {
-            let right_of_way = slot.right_of_way;
+            let (right_of_way, priority) = (slot.right_of_way, slot.priority);
             *slot = RouteConflict {
                 right_of_way,
+                priority,
                 ..conflict()
             };
         }
@@ -296,6 +314,7 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
         if let Some(path) = self.junction.paths.get_mut(i) {
             let last = path.range.end.saturating_sub(1);
             let length = self.junction.arc.get(last).copied().unwrap_or(0.0);
+            path.waits_at_line = given.is_some();
             path.line = given.unwrap_or(within(path.line, length));
         }
     }

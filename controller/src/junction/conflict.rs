@@ -41,6 +41,19 @@ impl RightOfWay {
     }
 }
 
+/// When a right of way counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Priority {
+    /// If both arrive at once: whoever arrives first goes first, as at an all-way stop.
+    #[default]
+    FirstCome,
+    /// Whoever arrives first, until both rest: then they take turns, so that four who each wait for the one on
+    /// their right do not wait for ever.
+    Unsigned,
+    /// Always, as signs and markings give it: whoever has it goes first, and takes no turns with the other.
+    Signed,
+}
+
 /// How the ego's route meets one other's. Arc lengths are the respective vehicle's own, in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RouteConflict {
@@ -52,8 +65,10 @@ pub struct RouteConflict {
     pub ego_conflict: f32,
     /// The same for the other.
     pub other_conflict: f32,
-    /// Who goes first if both arrive at once; unsettled unless the builder was told.
+    /// Who has the right of way; unsettled unless the builder was told.
     pub right_of_way: RightOfWay,
+    /// When the right of way counts.
+    pub priority: Priority,
     pub(crate) zones: Zones,
 }
 
@@ -64,6 +79,7 @@ impl RouteConflict {
         ego_conflict: 0.0,
         other_conflict: 0.0,
         right_of_way: RightOfWay::Unsettled,
+        priority: Priority::FirstCome,
         zones: [None; MAX_ZONES],
     };
 
@@ -80,6 +96,7 @@ impl RouteConflict {
             ego_conflict,
             other_conflict,
             right_of_way: RightOfWay::Unsettled,
+            priority: Priority::FirstCome,
             zones,
         }
     }
@@ -109,6 +126,7 @@ impl RouteConflict {
             other_conflict: self.ego_conflict,
             right_of_way: self.right_of_way.opposite(),
             zones,
+            ..*self
         }
     }
 }

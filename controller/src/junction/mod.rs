@@ -15,7 +15,7 @@ mod way;
 pub mod zone;
 
 pub use builder::{JunctionBuilder, MAX_TOLERANCE};
-pub use conflict::{ConflictKind, RightOfWay, RouteConflict};
+pub use conflict::{ConflictKind, Priority, RightOfWay, RouteConflict};
 pub use control::Control;
 pub use error::JunctionError;
 pub use meeting::CONFLICT_RADIUS;

@@ -54,6 +54,7 @@ pub struct Path {
     pub(super) footprint: Footprint,
     pub(super) exit: UnitVector,
     pub(super) line: f32,
+    pub(super) waits_at_line: bool,
     pub(super) control: Control,
     /// Its points in the pool.
     pub(super) range: Range<usize>,
@@ -82,6 +83,12 @@ impl Path {
     #[must_use]
     pub const fn line(&self) -> f32 {
         self.line
+    }
+
+    /// Whether the builder was told the line: a vehicle then waits there for all the others, and not in the junction.
+    #[must_use]
+    pub const fn waits_at_line(&self) -> bool {
+        self.waits_at_line
     }
 
     /// What obliges a vehicle to give way where it enters the junction; unknown unless the builder was told.

@@ -1,6 +1,6 @@
 //! The conflict zones ahead, as distances from where the ego is now.
 
-use super::contract::Contract;
+use super::contract::{Contract, Precedence};
 use super::own::Own;
 use super::precedence::has;
 use super::reach::Reach;
@@ -88,25 +88,34 @@ impl Hazards {
     ) {
         // From where the first zone that precedence opens begins to where the last one ends.
         let mut open = [FAR, -FAR];
+        let line = line_ahead(contract, way, ego);
         for (place, other) in (0_u8..).zip(tracks.iter()) {
             let Some(conflict) = way.conflict(other.path) else {
                 continue;
             };
-            for (zone, hazard) in of::<R>(contract, conflict, ego, other) {
-                if has(other.claims, hazard.zone)
-                    && granted(contract, hazard.passage, zone, (ego, other))
-                {
-                    let entry = zone.ego.from - ego.s - contract.position_error;
-                    open = [Real::min(open[0], entry), Real::max(open[1], hazard.target)];
-                    continue;
+            for (zone, mut hazard) in of::<R>(contract, conflict, ego, other) {
+                if has(other.claims, hazard.zone) {
+                    match granted(contract, hazard.passage, zone, (ego, other)) {
+                        Grant::Open => {
+                            let entry = zone.ego.from - ego.s - contract.position_error;
+                            open = [Real::min(open[0], entry), Real::max(open[1], hazard.target)];
+                            continue;
+                        }
+                        Grant::Beyond { target, passage } => {
+                            (hazard.target, hazard.passage) = (target, passage);
+                        }
+                        Grant::No => {}
+                    }
                 }
                 let clear = clear_of::<R>(conflict, zone, ego, other);
                 let clear = clear - ego.s - contract.position_error;
                 let waits = !zone.is_lane() && clear >= 0.0;
+                let rest = if waits { clear } else { hazard.rest };
+                let follows = matches!(hazard.passage, Passage::Never);
                 self.insert::<R>(Hazard {
                     place,
                     yields: conflict.right_of_way == RightOfWay::Other,
-                    rest: if waits { clear } else { hazard.rest },
+                    rest: if follows { rest } else { Real::min(rest, line) },
                     ..hazard
                 });
             }
@@ -200,6 +209,15 @@ pub(super) fn of<'z, R: Rules>(
         let hazard = hazard::<R>(contract, (index, zone), ego, other)?;
         Some((zone, hazard))
     })
+}
+
+/// Metres to the line at which the ego has to wait, if it has not passed it; far, if it has none.
+///
+/// An ego that waits there, and not between zones inside the junction, is in nobody's way.
+fn line_ahead(contract: &Contract, way: Way<'_>, ego: &Own) -> f32 {
+    let path = way.path(way.ego()).filter(|path| path.waits_at_line());
+    let ahead = path.map_or(FAR, |path| path.line() - ego.s - contract.position_error);
+    if ahead >= 0.0 { ahead } else { FAR }
 }
 
 /// Arc length (m) at which the ego waits for `other` before the crossing `zone`: where crossings of the two follow each other without
@@ -308,32 +326,58 @@ fn behind<R: Rules>(contract: &Contract, zone: &Zone, ego: &Own, other: &Other) 
     gap + R::earliest_rest(contract, other.bounds.speed.from)
 }
 
-/// Whether a zone in which the ego has precedence is no hazard: the other can still stop before it, and
-/// stays out of it for as long as the ego likes. The ego may even wait in it.
+/// What precedence makes of a zone.
+pub(super) enum Grant {
+    /// Nothing: it is a hazard like any other.
+    No,
+    /// It is no hazard.
+    Open,
+    /// It is none from a place on: the hazard is to come there.
+    Beyond {
+        /// Metres to that place.
+        target: f32,
+        /// By when the ego must have reached it.
+        passage: Passage,
+    },
+}
+
+/// What becomes of a zone in which the ego has precedence. It is no hazard if the other can still stop before it: the
+/// other then stays out of it for as long as the ego likes. The ego may even wait in it.
 ///
-/// Into a lane only if the ego is too near for the other to enter ahead of it: one that has
-/// planned to do so, with a safe gap, need not stop, and the ego must then be able to.
+/// Into a lane only from where the ego is too near for the other to enter ahead of it: one that has planned to do so,
+/// with a safe gap, need not stop, and the ego must then be able to. If the ego gets there before the other can enter at
+/// all, that does not happen.
 pub(super) fn granted(
     contract: &Contract,
     passage: Passage,
     zone: &Zone,
     (ego, other): (&Own, &Other),
-) -> bool {
-    let Some(rule) = contract.precedence else {
-        return false;
-    };
-    let settled = match passage {
-        Passage::Before { .. } => true,
-        Passage::Ahead { .. } => ego.least - zone.other.from > zone.lead.from,
-        Passage::Never => false,
-    };
+) -> Grant {
     let farthest = Reach {
         distance: other.bounds.s.to,
         speed: other.bounds.speed.to,
     };
     // Who stands at the very edge of its zone may take itself for one that is in it; one that is shielded rests a whole
     // slack before it.
-    settled && zone.other.from - 0.5 * contract.slack >= farthest.rest(rule.braking)
+    let stops = |rule: Precedence| {
+        zone.other.from - 0.5 * contract.slack >= farthest.rest(rule.braking)
+    };
+    if !contract.precedence.is_some_and(stops) {
+        return Grant::No;
+    }
+    let near = zone.other.from + zone.lead.from;
+    match passage {
+        Passage::Before { .. } => Grant::Open,
+        Passage::Ahead { .. } if ego.least > near => Grant::Open,
+        Passage::Ahead { speed, .. } => Grant::Beyond {
+            target: near - ego.s + 3.0 * contract.position_error + contract.slack,
+            passage: Passage::Before {
+                distance: zone.other.from - other.bounds.s.to,
+                speed,
+            },
+        },
+        Passage::Never => Grant::No,
+    }
 }
 
 /// Notes for each lane that the ego shares with `other` whether it is ahead there, and the other keeps its distance

@@ -44,7 +44,7 @@ use core::marker::PhantomData;
 use hazard::{Hazard, Hazards, Passage};
 use memory::Memory;
 use own::Own;
-use precedence::PairMemory;
+use precedence::{PairMemory, Right};
 use tracks::{Findings, Tracks};
 use verified::{Verified, best, passage_margin, spare};
 use waiting::{Presence, RestState, Sighting};
@@ -490,30 +490,28 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
                     .pair
                     .other
                     .note(contract, rule, line(other.path), its, now);
-                let conflict = self.way.conflict(other.path);
-                let right_of_way =
-                    conflict.map_or(RightOfWay::Unsettled, |conflict| conflict.right_of_way);
-                let right_of_way = if ego.is_some() {
-                    right_of_way
-                } else {
-                    RightOfWay::Unsettled
+                let Some(mut right) = right(self.way, other.path) else {
+                    continue;
                 };
+                if ego.is_none() {
+                    right.in_turns = RightOfWay::Unsettled;
+                }
                 other
                     .pair
-                    .pass::<R>(contract, rule, right_of_way, &self.presence);
+                    .pass::<R>(contract, rule, right, &self.presence);
             }
         }
         for other in self.tracks.iter_mut() {
             let Some(conflict) = self.way.conflict(other.path) else {
                 continue;
             };
-            let row = conflict.right_of_way;
-            other.claims = other.pair.claims(contract, rule, row, &self.presence);
+            let right = Right::of(conflict, self.way.ego(), other.path);
+            other.claims = other.pair.claims(contract, rule, right, &self.presence);
             if let Some(ego) = ego.filter(|_| other.claims != precedence::ALL) {
                 other
                     .pair
                     .hold::<R>(contract, &self.presence, conflict.zones(), ego.s);
-                other.claims = other.pair.claims(contract, rule, row, &self.presence);
+                other.claims = other.pair.claims(contract, rule, right, &self.presence);
             }
         }
     }
@@ -671,6 +669,11 @@ const fn next(contract: &Contract, plan: Plan) -> f32 {
     } else {
         -contract.ego.braking
     }
+}
+
+/// Which of the ego and an other on `path` goes first; nothing, if they do not meet.
+fn right(way: Way<'_>, path: PathId) -> Option<Right> {
+    Some(Right::of(way.conflict(path)?, way.ego(), path))
 }
 
 /// Whether in every lane that the ego shares, sensed positions tell who is ahead.

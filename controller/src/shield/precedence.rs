@@ -7,8 +7,9 @@ use super::contract::{Contract, Precedence};
 use super::rules::Rules;
 use super::waiting::{Presence, dip};
 use crate::instant::micros;
-use crate::junction::RightOfWay;
+use crate::junction::{PathId, Priority, RightOfWay, RouteConflict};
 use crate::junction::zone::Zone;
+use core::cmp::Ordering;
 
 /// The zones in which the ego has precedence, one bit each.
 pub(crate) type ZoneSet = u8;
@@ -21,12 +22,50 @@ pub(crate) fn has(set: ZoneSet, zone: u8) -> bool {
     set.checked_shr(zone.into()).unwrap_or(0) & 1 == 1
 }
 
+/// Which of the ego and one other goes first where they meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Right {
+    /// Who has the right of way.
+    pub of_way: RightOfWay,
+    /// When it counts.
+    pub priority: Priority,
+    /// Who comes first while they take turns. Of any number of vehicles one comes before all others, which the right of
+    /// way does not promise.
+    pub in_turns: RightOfWay,
+}
+
+impl Right {
+    /// On path `ego` and path `other`, which meet like this.
+    pub(crate) fn of(conflict: &RouteConflict, ego: PathId, other: PathId) -> Self {
+        let RouteConflict {
+            right_of_way,
+            priority,
+            ..
+        } = *conflict;
+        let by_number = match ego.cmp(&other) {
+            Ordering::Less => RightOfWay::Ego,
+            Ordering::Greater => RightOfWay::Other,
+            Ordering::Equal => RightOfWay::Unsettled,
+        };
+        Self {
+            of_way: right_of_way,
+            priority,
+            in_turns: match priority {
+                Priority::FirstCome | Priority::Signed => right_of_way,
+                Priority::Unsigned => by_number,
+            },
+        }
+    }
+}
+
 /// What the ego remembers of itself and one other who wait for each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct PairMemory {
     /// How the other came to its line.
     pub other: Presence,
     turn: Turn,
+    /// One of the two was seen not to have arrived yet: the other has taken no turn before.
+    from_the_start: bool,
 }
 
 /// Whose turn it is.
@@ -50,14 +89,21 @@ impl PairMemory {
         &self,
         contract: &Contract,
         rule: Precedence,
-        right_of_way: RightOfWay,
+        right: Right,
         ego: &Presence,
     ) -> u8 {
+        let mine = right.of_way == RightOfWay::Ego;
+        if right.priority == Priority::Signed && mine {
+            return ALL;
+        }
         match self.turn {
             Turn::First => {
                 let tie = (u64::from(rule.tie) + 1) * micros(contract.period);
-                let mine = right_of_way == RightOfWay::Ego;
-                let first = ego.arrival.goes_first(self.other.arrival, tie, mine);
+                let first = match right.priority {
+                    Priority::FirstCome => ego.arrival.goes_first(self.other.arrival, tie, mine),
+                    Priority::Unsigned => mine && self.from_the_start,
+                    Priority::Signed => false,
+                };
                 if first { ALL } else { 0 }
             }
             Turn::Past => 0,
@@ -98,9 +144,13 @@ impl PairMemory {
         &mut self,
         contract: &Contract,
         rule: Precedence,
-        right_of_way: RightOfWay,
+        right: Right,
         ego: &Presence,
     ) {
+        self.from_the_start |= ego.is_coming() || self.other.is_coming();
+        if right.priority == Priority::Signed {
+            return;
+        }
         let (mine, theirs) = (ego.standstill, self.other.standstill);
         let perhaps = mine.perhaps.min(theirs.perhaps);
         let surely = mine.surely.min(theirs.surely);
@@ -115,7 +165,7 @@ impl PairMemory {
         // A saturated counter no longer tells whose turn it is: nobody's.
         let counted = mine.perhaps < u16::MAX && theirs.perhaps < u16::MAX;
         // The first turn is the one's who gives way, the second the other's, and so on.
-        let owner = self.first(contract, right_of_way, ego) == Some(turn % 2 == 1);
+        let owner = self.first(contract, right.in_turns, ego) == Some(turn % 2 == 1);
         if surely == begins.saturating_add(R::grace(contract)) && counted && owner {
             self.turn = Turn::Ego;
         }
@@ -129,8 +179,8 @@ impl PairMemory {
 
     /// Whether the ego comes before the other while both rest, so that the other knows it, too: by the right of
     /// way; without one, by how much earlier it arrived and came to rest.
-    fn first(&self, contract: &Contract, right_of_way: RightOfWay, ego: &Presence) -> Option<bool> {
-        match right_of_way {
+    fn first(&self, contract: &Contract, in_turns: RightOfWay, ego: &Presence) -> Option<bool> {
+        match in_turns {
             RightOfWay::Ego => Some(true),
             RightOfWay::Other => Some(false),
             RightOfWay::Unsettled => {

@@ -85,6 +85,8 @@ pub struct Arrival {
     after: Option<Instant>,
     /// It has certainly arrived by this moment; none if it may not have arrived yet.
     by: Option<Instant>,
+    /// It had certainly not arrived yet when it was noted last.
+    coming: bool,
 }
 
 /// Whether a vehicle has arrived.
@@ -107,9 +109,10 @@ impl Arrival {
     ) -> Arrived {
         let here = line - rule.distance;
         let jitter = micros(contract.jitter);
+        self.coming = self.by.is_none() && s.to < here;
         if self.by.is_some() {
             Arrived::Surely
-        } else if s.to < here {
+        } else if self.coming {
             self.after = Some(now.minus(jitter));
             Arrived::Not
         } else if s.from >= here {
@@ -228,8 +231,14 @@ impl Presence {
     ) {
         let arrived = match sighting.s {
             Some(s) => self.arrival.note(contract, rule, line, s, now),
-            None if self.arrival.by.is_some() => Arrived::Surely,
-            None => Arrived::Perhaps,
+            None => {
+                self.arrival.coming = false;
+                if self.arrival.by.is_some() {
+                    Arrived::Surely
+                } else {
+                    Arrived::Perhaps
+                }
+            }
         };
         let calls = calls_in_between(contract);
         self.standstill.note(sighting.rest, arrived, calls);
@@ -240,6 +249,11 @@ impl Presence {
         if rest != RestState::Surely {
             self.standstill.surely = 0;
         }
+    }
+
+    /// Whether it was certainly still on its way to where it arrives when it was noted last.
+    pub(super) const fn is_coming(&self) -> bool {
+        self.arrival.coming
     }
 
     /// Nothing is known any more of how long it has rested.

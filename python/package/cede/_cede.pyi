@@ -161,8 +161,12 @@ class JunctionBuilder:
         length: float = 5.0,
         width: float = 2.0,
         line: float | None = None,
+        control: Literal["unknown", "free", "yield", "stop", "all-way-stop"] = "unknown",
     ) -> int:
-        """Add a path along `points`, shape (n, 2), in metres; its number is returned."""
+        """Add a path along `points`, shape (n, 2), in metres; its number is returned.
+
+        `line` (m) is where a vehicle waits: it passes it only with a plan through the junction.
+        """
     def variant(
         self,
         of: int,
@@ -172,8 +176,17 @@ class JunctionBuilder:
         line: float | None = None,
     ) -> int:
         """Add a path along the points of path `of`, for another class of vehicles."""
-    def right_of_way(self, first: int, second: int) -> None:
-        """Say that path `first` goes before path `second` if their vehicles arrive at once."""
+    def right_of_way(
+        self,
+        first: int,
+        second: int,
+        priority: Literal["first-come", "unsigned", "signed"] = "first-come",
+    ) -> None:
+        """Say that vehicles of path `first` have the right of way over those of path `second`.
+
+        It counts if both arrive at once (`"first-come"`), until both rest and take turns
+        (`"unsigned"`), or always (`"signed"`).
+        """
     def build(self) -> Junction: ...
 
 @final

@@ -374,6 +374,7 @@ class Bridge:
         if self.settings.shield:
             decision = car.shield.filter(now, ego, tracks, wanted)
             wanted = decision.acceleration
+            car.last = decision
             measures.shielded += decision.cause != "policy"
             measures.no_plan += decision.no_plan
             measures.breaches += decision.breach is not None
@@ -458,4 +459,4 @@ def contract_named(name: str) -> Contract:
 
 def _contract_of(site: Site) -> Contract:
     """First come, first served where everybody stops; elsewhere nobody's courtesy is assumed."""
-    return contract_named("all-way-stop" if site.kind == "allway_stop" else "worst-case")
+    return contract_named("all-way-stop")

@@ -165,9 +165,9 @@ class Network:
             movements.append(self._movement(path, connection, way))
         for second, later in enumerate(connections):
             for first, earlier in enumerate(connections[:second]):
-                # Who arrives at once needs an order: where SUMO has none, that of its links.
-                swapped = _forbids(node, later, earlier) and not _forbids(node, earlier, later)
-                builder.right_of_way(*((second, first) if swapped else (first, second)))
+                right = _right(node, earlier, later)
+                pair = (first, second) if right.first is earlier else (second, first)
+                builder.right_of_way(*pair, right.priority)
         try:
             junction = builder.build()
         except Error as wrong:
@@ -229,6 +229,29 @@ def _read(file: str) -> Any:
         return sumolib.net.readNet(file, withInternal=True)
     except Exception as wrong:
         raise Error(f"{file}: not a network of SUMO: {wrong}") from wrong
+
+
+@dataclass(frozen=True)
+class _Right:
+    """Which of two connections has the right of way, and when it counts."""
+
+    first: Any
+    priority: str
+
+
+def _right(node: Any, one: Any, two: Any) -> _Right:
+    """The right of way of two connections as SUMO has it, and an order where it has none."""
+    if node.getType() == "allway_stop":
+        return _Right(one, "first-come")
+    forbids, forbidden = _forbids(node, one, two), _forbids(node, two, one)
+    if forbids != forbidden:
+        signs = node.getType() in ("priority", "priority_stop", "zipper")
+        return _Right(one if forbids else two, "signed" if signs else "unsigned")
+    # Vehicles of these two touch only where they cut corners, or both have to look out.
+    one_major, two_major = (connection.getState() == "M" for connection in (one, two))
+    if one_major != two_major:
+        return _Right(one if one_major else two, "signed")
+    return _Right(one, "unsigned")
 
 
 def _forbids(node: Any, first: Any, second: Any) -> bool:
