@@ -50,7 +50,7 @@ pub enum Priority {
     /// Whoever arrives first, until both rest: then they take turns, so that four who each wait for the one on
     /// their right do not wait for ever.
     Unsigned,
-    /// Always, as signs and markings give it: whoever has it goes first, and takes no turns with the other.
+    /// The same as signs and markings give it: whoever has to give way waits four times as long before they take turns.
     Signed,
 }
 

@@ -22,6 +22,9 @@ pub(crate) fn has(set: ZoneSet, zone: u8) -> bool {
     set.checked_shr(zone.into()).unwrap_or(0) & 1 == 1
 }
 
+/// How many times longer two wait for each other until they take turns where signs say who goes first.
+const SIGNED: u16 = 4;
+
 /// Which of the ego and one other goes first where they meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Right {
@@ -56,6 +59,15 @@ impl Right {
             },
         }
     }
+
+    /// Periods for which both rest before the first turn. Whoever has to give way to signs waits longer before it takes
+    /// the other for one that does not go.
+    const fn patience(self, rule: Precedence) -> u16 {
+        match self.priority {
+            Priority::FirstCome | Priority::Unsigned => rule.patience,
+            Priority::Signed => rule.patience.saturating_mul(SIGNED),
+        }
+    }
 }
 
 /// What the ego remembers of itself and one other who wait for each other.
@@ -64,15 +76,15 @@ pub struct PairMemory {
     /// How the other came to its line.
     pub other: Presence,
     turn: Turn,
-    /// One of the two was seen not to have arrived yet: the other has taken no turn before.
-    from_the_start: bool,
 }
 
 /// Whose turn it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 enum Turn {
-    /// Whoever goes first by arrival and right of way.
+    /// No period of the two has been counted yet: nobody's.
     #[default]
+    New,
+    /// Whoever goes first by arrival and right of way.
     First,
     /// Not the ego's.
     Past,
@@ -93,20 +105,16 @@ impl PairMemory {
         ego: &Presence,
     ) -> u8 {
         let mine = right.of_way == RightOfWay::Ego;
-        if right.priority == Priority::Signed && mine {
-            return ALL;
-        }
         match self.turn {
             Turn::First => {
                 let tie = (u64::from(rule.tie) + 1) * micros(contract.period);
                 let first = match right.priority {
                     Priority::FirstCome => ego.arrival.goes_first(self.other.arrival, tie, mine),
-                    Priority::Unsigned => mine && self.from_the_start,
-                    Priority::Signed => false,
+                    Priority::Unsigned | Priority::Signed => mine,
                 };
                 if first { ALL } else { 0 }
             }
-            Turn::Past => 0,
+            Turn::New | Turn::Past => 0,
             Turn::Ego => ALL,
             Turn::Inside(zones) => zones,
         }
@@ -147,23 +155,26 @@ impl PairMemory {
         right: Right,
         ego: &Presence,
     ) {
-        self.from_the_start |= ego.is_coming() || self.other.is_coming();
-        if right.priority == Priority::Signed {
-            return;
+        if self.turn == Turn::New {
+            self.turn = Turn::First;
         }
+        let patience = right.patience(rule);
         let (mine, theirs) = (ego.standstill, self.other.standstill);
         let perhaps = mine.perhaps.min(theirs.perhaps);
         let surely = mine.surely.min(theirs.surely);
-        let patiences = perhaps.checked_div(rule.patience).unwrap_or(0);
+        let patiences = perhaps.checked_div(patience).unwrap_or(0);
         let Some(turn) = patiences.checked_ilog2() else {
             return;
         };
-        let begins = rule.patience.saturating_mul(1 << turn);
-        if R::ends(perhaps, surely, begins, rule.patience) {
+        let begins = patience.saturating_mul(1 << turn);
+        if R::ends(perhaps, surely, begins, patience) {
             self.turn = Turn::Past;
         }
-        // A saturated counter no longer tells whose turn it is: nobody's.
-        let counted = mine.perhaps < u16::MAX && theirs.perhaps < u16::MAX;
+        // Of one who may have rested for ever only the other's rest is counted. If both may have, or if who comes first
+        // is told from how long either rested, it is nobody's turn.
+        let counted = perhaps < u16::MAX
+            && (right.in_turns != RightOfWay::Unsettled
+                || mine.perhaps < u16::MAX && theirs.perhaps < u16::MAX);
         // The first turn is the one's who gives way, the second the other's, and so on.
         let owner = self.first(contract, right.in_turns, ego) == Some(turn % 2 == 1);
         if surely == begins.saturating_add(R::grace(contract)) && counted && owner {

@@ -85,8 +85,6 @@ pub struct Arrival {
     after: Option<Instant>,
     /// It has certainly arrived by this moment; none if it may not have arrived yet.
     by: Option<Instant>,
-    /// It had certainly not arrived yet when it was noted last.
-    coming: bool,
 }
 
 /// Whether a vehicle has arrived.
@@ -109,10 +107,9 @@ impl Arrival {
     ) -> Arrived {
         let here = line - rule.distance;
         let jitter = micros(contract.jitter);
-        self.coming = self.by.is_none() && s.to < here;
         if self.by.is_some() {
             Arrived::Surely
-        } else if self.coming {
+        } else if s.to < here {
             self.after = Some(now.minus(jitter));
             Arrived::Not
         } else if s.from >= here {
@@ -231,14 +228,8 @@ impl Presence {
     ) {
         let arrived = match sighting.s {
             Some(s) => self.arrival.note(contract, rule, line, s, now),
-            None => {
-                self.arrival.coming = false;
-                if self.arrival.by.is_some() {
-                    Arrived::Surely
-                } else {
-                    Arrived::Perhaps
-                }
-            }
+            None if self.arrival.by.is_some() => Arrived::Surely,
+            None => Arrived::Perhaps,
         };
         let calls = calls_in_between(contract);
         self.standstill.note(sighting.rest, arrived, calls);
@@ -249,11 +240,6 @@ impl Presence {
         if rest != RestState::Surely {
             self.standstill.surely = 0;
         }
-    }
-
-    /// Whether it was certainly still on its way to where it arrives when it was noted last.
-    pub(super) const fn is_coming(&self) -> bool {
-        self.arrival.coming
     }
 
     /// Nothing is known any more of how long it has rested.

@@ -22,6 +22,10 @@ INTENTS = ("hidden", "known")
 
 AT_LINE = 2.0
 """Metres before its line from which a vehicle that stands is at it."""
+SETTING_OFF = 4.0
+"""Speed (m/s), at least, at which a vehicle is expected to cross a junction."""
+ROOM = 2.0
+"""Metres to the vehicle ahead beyond the junction, without which a vehicle waits before it."""
 _NOTHING = 0
 """Speed mode: nothing of SUMO's own acts on the vehicle."""
 _OWN = 31
@@ -68,6 +72,8 @@ class Car:
 
     name: str
     number: int
+    length: float
+    """Metres."""
     chosen: bool
     """Whether it is one of those that are driven, or measured beside them."""
     lane: str = ""
@@ -211,7 +217,7 @@ class Bridge:
             chosen = chosen and self.measures.driven < settings.ego
         self.measures.driven += chosen
         speed = vehicle.getSpeed(name)
-        return Car(name, self._numbers % 65536, chosen, speed=speed)
+        return Car(name, self._numbers % 65536, length, chosen, speed=speed)
 
     def _read(self, car: Car) -> None:
         vehicle, step = self.sumo.vehicle, self.settings.step
@@ -424,6 +430,8 @@ class Bridge:
         # SUMO also names those who are about to merge: they are the shield's matter.
         if other is None or all(stretch.lane != other.lane for stretch in movement.stretches):
             return wanted
+        if _blocks(car, other, leader[1]):
+            wanted = min(wanted, _stopping(car.speed, movement.line - car.s, braking))
         return min(wanted, self._behind(car, other, leader[1]))
 
     def _behind(self, car: Car, leader: Car, gap: float) -> float:
@@ -440,6 +448,16 @@ def _front(car: Car, stretch: Stretch) -> float:
     return stretch.start + car.position * stretch.scale
 
 
+def _blocks(car: Car, leader: Car, gap: float) -> bool:
+    """Whether a vehicle before its line would find no room behind `leader` beyond the junction."""
+    movement = car.movement
+    if car.s > movement.line:
+        return False
+    beyond = movement.stretches[-1].start + car.length
+    time = (beyond - car.front) / max(car.speed, SETTING_OFF)
+    return car.front + gap + leader.speed * time < beyond + ROOM
+
+
 def _stopping(speed: float, room: float, braking: float) -> float:
     """The acceleration (m/s²) that stops in `room` metres: none before it must brake by then."""
     if room < 1.0:
@@ -448,13 +466,17 @@ def _stopping(speed: float, room: float, braking: float) -> float:
     return -needed if needed > 0.8 * braking else math.inf
 
 
+import json as _json
+_X = _json.loads(os.environ.get("CX", "{}"))
+
+
 def contract_named(name: str) -> Contract:
     """A contract by its name, with the errors of a vehicle's place on its path here.
 
     SUMO moves a vehicle's front bumper along its lanes; where these bend, its centre is a little
     faster or slower than the front.
     """
-    return Contract(name, position_error=0.05, speed_error=0.1)
+    return Contract(name, position_error=0.05, speed_error=0.1, **_X)
 
 
 def _contract_of(site: Site) -> Contract:

@@ -28,7 +28,7 @@ STOPS = "sw"
 MOST_CANDIDATES = 4
 """Ways that a lane may lead: a track has so many candidate paths."""
 
-BEFORE, BEYOND = 150.0, 100.0
+BEFORE, BEYOND = 300.0, 100.0
 """Metres of the lanes before and beyond a junction that belong to its paths."""
 
 LATERAL = 2.5
