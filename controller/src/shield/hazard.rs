@@ -8,7 +8,7 @@ use super::rules::Rules;
 use super::tracks::{News, Other, Tracks};
 use super::unwatched::Closed;
 use crate::junction::zone::{FAR, MAX_ZONES, Zone};
-use crate::junction::{MAX_OTHERS, RightOfWay, RouteConflict, Way};
+use crate::junction::{MAX_OTHERS, PathId, RightOfWay, RouteConflict, Way};
 use crate::real::Real;
 use heapless::Vec;
 
@@ -58,6 +58,9 @@ pub(crate) enum Passage {
         gap: f32,
         /// The other's speed, at most, in m/s.
         speed: f32,
+        /// Metres, at least, from the other to where it arrives, if from there on it may count on the ego to stay out of
+        /// the lane.
+        arrives: f32,
     },
     /// Not as long as the other is where it is: the ego is behind it in one lane.
     Never,
@@ -93,19 +96,13 @@ impl Hazards {
             let Some(conflict) = way.conflict(other.path) else {
                 continue;
             };
-            for (zone, mut hazard) in of::<R>(contract, conflict, ego, other) {
-                if has(other.claims, hazard.zone) {
-                    match granted(contract, hazard.passage, zone, (ego, other)) {
-                        Grant::Open => {
-                            let entry = zone.ego.from - ego.s - contract.position_error;
-                            open = [Real::min(open[0], entry), Real::max(open[1], hazard.target)];
-                            continue;
-                        }
-                        Grant::Beyond { target, passage } => {
-                            (hazard.target, hazard.passage) = (target, passage);
-                        }
-                        Grant::No => {}
-                    }
+            for (zone, hazard) in of::<R>(contract, way, ego, other) {
+                if has(other.claims, hazard.zone)
+                    && granted(contract, way, hazard.passage, zone, (ego, other))
+                {
+                    let entry = zone.ego.from - ego.s - contract.position_error;
+                    open = [Real::min(open[0], entry), Real::max(open[1], hazard.target)];
+                    continue;
                 }
                 let clear = clear_of::<R>(conflict, zone, ego, other);
                 let clear = clear - ego.s - contract.position_error;
@@ -200,13 +197,16 @@ impl Hazard {
 /// The hazards that `other` is to the ego, each with its zone.
 pub(super) fn of<'z, R: Rules>(
     contract: &Contract,
-    conflict: &'z RouteConflict,
+    way: Way<'z>,
     ego: &Own,
     other: &Other,
 ) -> impl Iterator<Item = (&'z Zone, Hazard)> {
-    let zones = (0_u8..).zip(conflict.zones());
-    zones.filter_map(move |(index, zone)| {
-        let hazard = hazard::<R>(contract, (index, zone), ego, other)?;
+    let zones = way.conflict(other.path).map(RouteConflict::zones);
+    let arrives = contract
+        .precedence
+        .map_or(FAR, |rule| arrival(way, rule, other.path) - other.bounds.s.to);
+    (0_u8..).zip(zones.into_iter().flatten()).filter_map(move |(index, zone)| {
+        let hazard = hazard::<R>(contract, (index, zone), ego, other, arrives)?;
         Some((zone, hazard))
     })
 }
@@ -242,6 +242,7 @@ fn hazard<R: Rules>(
     (index, zone): (u8, &Zone),
     ego: &Own,
     other: &Other,
+    arrives: f32,
 ) -> Option<Hazard> {
     let error = contract.position_error;
     let bounds = other.bounds;
@@ -274,6 +275,7 @@ fn hazard<R: Rules>(
         return None;
     }
     let behind = behind::<R>(contract, zone, ego, other);
+    let waits = ego.least < zone.ego.from && !has(other.claims, index);
     Some(
         if !is_ahead::<R>(contract, zone, ego, other) && behind > stop {
             Hazard {
@@ -289,6 +291,7 @@ fn hazard<R: Rules>(
                 passage: Passage::Ahead {
                     gap: gap_ahead(zone, ego, other),
                     speed,
+                    arrives: if waits { arrives } else { FAR },
                 },
                 ..crossing
             }
@@ -326,58 +329,38 @@ fn behind<R: Rules>(contract: &Contract, zone: &Zone, ego: &Own, other: &Other) 
     gap + R::earliest_rest(contract, other.bounds.speed.from)
 }
 
-/// What precedence makes of a zone.
-pub(super) enum Grant {
-    /// Nothing: it is a hazard like any other.
-    No,
-    /// It is no hazard.
-    Open,
-    /// It is none from a place on: the hazard is to come there.
-    Beyond {
-        /// Metres to that place.
-        target: f32,
-        /// By when the ego must have reached it.
-        passage: Passage,
-    },
-}
-
-/// What becomes of a zone in which the ego has precedence. It is no hazard if the other can still stop before it: the
-/// other then stays out of it for as long as the ego likes. The ego may even wait in it.
+/// Whether a zone in which the ego has precedence is no hazard: the other can still stop before it, and
+/// stays out of it for as long as the ego likes. The ego may even wait in it.
 ///
-/// Into a lane only from where the ego is too near for the other to enter ahead of it: one that has planned to do so,
-/// with a safe gap, need not stop, and the ego must then be able to. If the ego gets there before the other can enter at
-/// all, that does not happen.
+/// A lane only once the ego has arrived at its line: until then, one that has to wait may enter ahead of it with the safe
+/// gap.
 pub(super) fn granted(
     contract: &Contract,
+    way: Way<'_>,
     passage: Passage,
     zone: &Zone,
     (ego, other): (&Own, &Other),
-) -> Grant {
+) -> bool {
+    let Some(rule) = contract.precedence else {
+        return false;
+    };
+    let settled = match passage {
+        Passage::Before { .. } => true,
+        Passage::Ahead { .. } => ego.least >= arrival(way, rule, way.ego()),
+        Passage::Never => false,
+    };
     let farthest = Reach {
         distance: other.bounds.s.to,
         speed: other.bounds.speed.to,
     };
     // Who stands at the very edge of its zone may take itself for one that is in it; one that is shielded rests a whole
     // slack before it.
-    let stops = |rule: Precedence| {
-        zone.other.from - 0.5 * contract.slack >= farthest.rest(rule.braking)
-    };
-    if !contract.precedence.is_some_and(stops) {
-        return Grant::No;
-    }
-    let near = zone.other.from + zone.lead.from;
-    match passage {
-        Passage::Before { .. } => Grant::Open,
-        Passage::Ahead { .. } if ego.least > near => Grant::Open,
-        Passage::Ahead { speed, .. } => Grant::Beyond {
-            target: near - ego.s + 3.0 * contract.position_error + contract.slack,
-            passage: Passage::Before {
-                distance: zone.other.from - other.bounds.s.to,
-                speed,
-            },
-        },
-        Passage::Never => Grant::No,
-    }
+    settled && zone.other.from - 0.5 * contract.slack >= farthest.rest(rule.braking)
+}
+
+/// Arc length (m) at which a vehicle of `path` arrives.
+fn arrival(way: Way<'_>, rule: Precedence, path: PathId) -> f32 {
+    way.path(path).map_or(FAR, |path| path.line() - rule.distance)
 }
 
 /// Notes for each lane that the ego shares with `other` whether it is ahead there, and the other keeps its distance

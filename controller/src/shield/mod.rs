@@ -766,7 +766,7 @@ impl Scene<'_> {
                     arrives: margin::arrival(contract, distance, speed),
                     clears,
                 },
-                Passage::Ahead { gap, speed } => {
+                Passage::Ahead { gap, speed, .. } => {
                     let rush = R::rush(contract, speed, clears);
                     Reason::Entry {
                         other,

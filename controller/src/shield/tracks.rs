@@ -381,13 +381,15 @@ fn newcomer<R: Rules>(
     let Place::Known { base, at, settled } = entry.place else {
         return None;
     };
-    let conflict = way.conflict(path).filter(|_| entry.seen)?;
+    if !entry.seen {
+        return None;
+    }
     let other = Other {
         settled,
         ..Other::at(number, path, 0.0, base, at)
     };
     let mut hazards = Vec::new();
-    for (_, hazard) in hazard::of::<R>(contract, conflict, ego, &other) {
+    for (_, hazard) in hazard::of::<R>(contract, way, ego, &other) {
         // Two paths have no more zones than that. `collect` would panic if they had.
         let _ = hazards.push(hazard);
     }

@@ -97,10 +97,15 @@ pub(crate) fn passage_margin<R: Rules>(
         Passage::Before { distance, speed } => {
             margin::clears_before(contract, distance, rush(speed))
         }
-        Passage::Ahead { gap, speed } => {
+        Passage::Ahead {
+            gap,
+            speed,
+            arrives,
+        } => {
             let rush = rush(speed);
             let needed = R::safe_gap(contract, rush.speed, ego_speed);
-            margin::enters_ahead(contract, gap, rush, needed)
+            let enters = margin::enters_ahead(contract, gap, rush, needed);
+            Real::min(enters, margin::clears_before(contract, arrives, rush))
         }
         Passage::Never => -FAR,
     }
