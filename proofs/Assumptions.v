@@ -17,6 +17,7 @@ Print Assumptions never_two_turns.
 Print Assumptions orders_agree.
 Print Assumptions never_both_right_of_way.
 Print Assumptions never_both_equals.
+Print Assumptions never_both_sides.
 Print Assumptions conditions_can_be_met.
 Print Assumptions a_passage_can_be_verified.
 Print Assumptions C6_is_needed.

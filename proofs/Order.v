@@ -163,5 +163,21 @@ Proof.
     destruct (its_arrivals _ _ _ _ _ _ _ _ P x). destruct (its_arrivals _ _ _ _ _ _ _ _ P (negb x)).
     destruct (its_arrivals _ _ _ _ _ _ _ _ Q x). destruct (its_arrivals _ _ _ _ _ _ _ _ Q (negb x)). lra.
 Qed.
+
+(* P has the right of way whoever arrives first: Q never claims but by turns. Whose turn it is, is settled by any order. *)
+Theorem never_both_sides (gives_way : bool) :
+  takes_turns T G both_S_p both_L_p (fun _ n => Nat.even n = gives_way) turn_p ->
+  takes_turns T G both_S_q both_L_q (fun _ n => Nat.even n = negb gives_way) turn_q ->
+  (forall j, ~ claim_q j) ->
+  forall t i j, p i <= t < p (i + 1)%nat -> q j <= t < q (j + 1)%nat ->
+  claims_now claim_p turn_p i -> ~ claims_now claim_q turn_q j.
+Proof.
+  intros tp tq none t i j np nq.
+  apply (never_both k v arrival from r ok keeps m T G en patient graceful jitter_small) with (x := t) (p := p) (q := q) (1 := pair_P) (2 := pair_Q)
+    (3 := tp) (4 := tq); auto.
+  - apply (right_of_way_agrees p q both_L_q gives_way).
+  - pose proof (right_of_way_agrees q p both_L_p (negb gives_way)) as A. rewrite Bool.negb_involutive in A. exact A.
+  - intros a b _ cb. exact (none b cb).
+Qed.
 End Two.
 End Order.

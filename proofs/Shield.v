@@ -281,17 +281,15 @@ Hypothesis yields : gives_way k z s tau l c t w claimed since.
 Lemma safe_by_precedence i0 i u : (since <= i0 <= i)%nat -> opened_at k l b z claimed i0 ->
   (forall j, (i0 <= j < i)%nat -> carries_on k l c j) -> tau i0 <= u <= tau (S i) -> ~ inside z (s u) (t u).
 Proof.
-  intros h (cl & stop & ahead) carried hu (_ & [tin _] & _).
-  destruct (truth i0 ltac:(lia)) as ((sT & vT & least_) & _). destruct (bounded i0 ltac:(lia)) as [tT wT].
-  pose proof (forwards t w other_moves (tau i0)) as w0.
-  assert (t u <= t_in z); [| lra].
+  intros h (cl & stop) carried hu (_ & [tin _] & [_ led]).
+  destruct (bounded i0 ltac:(lia)) as [tT wT]. pose proof (forwards t w other_moves (tau i0)) as w0.
+  assert (t u <= t_in z \/ (lane z = Datatypes.true /\ lead_to z <= s u - t u)); [| lra].
   apply (yields i0 i h cl) with (u := u); auto.
-  - apply Rle_trans with (2 := stop). unfold rest_of. cbn.
-    assert (0 < precedence_braking k) by (destruct ok; lra).
-    assert (w (tau i0) * w (tau i0) / (precedence_braking k + precedence_braking k)
-            <= w_most (b i0) * w_most (b i0) / (precedence_braking k + precedence_braking k)); [| lra].
-    apply Rmult_le_compat_r; [left; apply Rinv_0_lt_compat; lra | apply Rmult_le_compat; lra].
-  - intros la. specialize (ahead la). lra.
+  apply Rle_trans with (2 := stop). unfold rest_of. cbn.
+  assert (0 < precedence_braking k) by (destruct ok; lra).
+  assert (w (tau i0) * w (tau i0) / (precedence_braking k + precedence_braking k)
+          <= w_most (b i0) * w_most (b i0) / (precedence_braking k + precedence_braking k)); [| lra].
+  apply Rmult_le_compat_r; [left; apply Rinv_0_lt_compat; lra | apply Rmult_le_compat; lra].
 Qed.
 
 (* While a zone is judged at a call, ego and other are not inside of it until the next one. *)

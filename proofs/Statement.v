@@ -207,10 +207,10 @@ Definition settles (i : nat) :=
    i = since).
 Definition settled (i : nat) := exists i0, (since <= i0 <= i)%nat /\ settles i0.
 
-(* D13 Opened at call i: the ego has precedence, and the other can still stop. *)
+(* D13 Opened at call i: the ego has precedence, and the other can still stop. To have precedence in a lane, the ego must
+   have arrived at its line as well. *)
 Definition opened_at (i : nat) := claimed i /\
-  rest_of {| distance := t_most (b i); speed := w_most (b i) |} (precedence_braking k) <= t_in z /\
-  (lane z = true -> lead_from z < own_least (ego_at l i) - t_in z).
+  rest_of {| distance := t_most (b i); speed := w_most (b i) |} (precedence_braking k) <= t_in z.
 
 (* At call i nothing is to be feared of the zone: it is over or settled, the plan in force was verified against it, or it
    counts on the ego's precedence. *)
@@ -234,14 +234,13 @@ Arguments place {path}. Arguments rate {path}. Arguments on {path}. Arguments si
 Arguments candidates {path}. Arguments view {path}. Arguments claims {path}.
 
 (* C7: an other that can still stop before a zone in which the ego has precedence stays out of it while the plan in force
-   counts on it. *)
+   counts on it; or, in a lane, behind the ego. *)
 Definition gives_way (k : contract) (z : zone) (s : R -> R) (tau : nat -> R) (l : log) (c : nat -> R) (t w : R -> R)
     (claimed : nat -> Prop) (since : nat) :=
   forall i0 i, (since <= i0 <= i)%nat -> claimed i0 ->
     rest_of {| distance := t (tau i0); speed := w (tau i0) |} (precedence_braking k) <= t_in z ->
-    (lane z = true -> lead_from z < s (tau i0) - t_in z) ->
     (forall j, (i0 <= j < i)%nat -> carries_on k l c j) ->
-    forall u, tau i0 <= u <= tau (S i) -> t u <= t_in z.
+    forall u, tau i0 <= u <= tau (S i) -> t u <= t_in z \/ (lane z = true /\ lead_to z <= s u - t u).
 
 (* C2, C3, C6, C7, A9, A11 for an other. *)
 Record keeps_all (k : contract) (path : Type) (zones : path -> list zone) (s v : R -> R) (tau c : nat -> R)

@@ -22,7 +22,7 @@ pub use crate::shield::rules::{Rules, Sound};
 
 /// The rule of precedence as it flies, for a model checker: what one shield remembers of two vehicles.
 pub mod precedence {
-    pub use crate::shield::precedence::PairMemory;
+    pub use crate::shield::precedence::{PairMemory, Right};
     pub use crate::shield::waiting::{Arrival, Presence, RestState, Sighting};
 }
 

@@ -134,7 +134,7 @@ impl Hazards {
         for hazard in &mut self.sorted {
             let waits = !matches!(hazard.passage, Passage::Never);
             if waits && !hazard.yields && (from..to).contains(&hazard.limit) {
-                hazard.rest = from;
+                hazard.rest = Real::min(hazard.rest, from);
             }
         }
     }

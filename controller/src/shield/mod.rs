@@ -597,7 +597,8 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         let found = if verdict.margin >= 0.0 {
             Some((wanted, verdict))
         } else {
-            nearest(&contract.ego, scene.most, wanted, accepted)
+            let nearest = nearest(&contract.ego, scene.most, wanted, accepted);
+            nearest.filter(|&(found, _)| self.is_nearer(scene, wanted, found))
         };
         let planned = found.is_some() || self.memory.plan().is_some();
         let cause = if !planned {
@@ -635,6 +636,15 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
             plan: self.memory.plan(),
             ..Decision::none(&contract)
         }
+    }
+
+    /// Whether `found` (m/s²) is nearer to what is `wanted` than the next command of the remembered plan. With sensing
+    /// errors a plan that is carried on may go where a fresh one, of the same commands, would have to stop.
+    fn is_nearer(&self, scene: &Scene<'_>, wanted: f32, found: f32) -> bool {
+        self.memory.plan().is_none_or(|plan| {
+            let next = allowed(&self.contract.ego, scene.most, next(&self.contract, plan));
+            (found - wanted).abs() <= (next - wanted).abs()
+        })
     }
 
     /// Notes which lanes the plan enters ahead of somebody.

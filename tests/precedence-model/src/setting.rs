@@ -1,6 +1,7 @@
 //! What is modelled, and its bounds.
 
-use cede_controller::{Contract, Precedence, RightOfWay};
+use cede_controller::dangerous::precedence::Right;
+use cede_controller::{Contract, Precedence, Priority, RightOfWay};
 
 /// Metres from one place to the next: also the contract's error of sensed places.
 pub const UNIT: f32 = 0.1;
@@ -37,6 +38,8 @@ pub struct Setting<const N: usize> {
     pub rule: Precedence,
     /// Who has the right of way: `rights[i][j]` is what vehicle i knows of itself and j.
     pub rights: [[RightOfWay; N]; N],
+    /// When it counts.
+    pub priority: Priority,
     /// Steps a period.
     pub grain: u8,
     /// Steps by which each shield's calls are later than the grid of periods.
@@ -81,6 +84,7 @@ impl<const N: usize> Setting<N> {
             contract: contract(rule, 0.0, 0.0),
             rule,
             rights: [[RightOfWay::Unsettled; N]; N],
+            priority: Priority::FirstCome,
             grain: 2,
             phases: [0; N],
             jitter: 0,
@@ -104,6 +108,25 @@ impl<const N: usize> Setting<N> {
         self.rights[first][second] = RightOfWay::Ego;
         self.rights[second][first] = RightOfWay::Other;
         self
+    }
+
+    /// What vehicle `one` knows of itself and `two`.
+    #[must_use]
+    pub fn right_of(&self, one: usize, two: usize) -> Right {
+        let by_number = if one < two {
+            RightOfWay::Ego
+        } else {
+            RightOfWay::Other
+        };
+        let of_way = self.rights[one][two];
+        Right {
+            of_way,
+            priority: self.priority,
+            in_turns: match self.priority {
+                Priority::Unsigned => by_number,
+                _ => of_way,
+            },
+        }
     }
 
     /// Sensed speeds err by so much (m/s).

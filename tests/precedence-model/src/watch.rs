@@ -173,11 +173,10 @@ impl<const N: usize> Watch<N> {
             };
             self.presence.note(contract, rule, line, sighting(own), now);
             for other in (0..N).filter(|&other| other != own) {
-                let right = if blind {
-                    RightOfWay::Unsettled
-                } else {
-                    setting.rights[own][other]
-                };
+                let mut right = setting.right_of(own, other);
+                if blind {
+                    right.in_turns = RightOfWay::Unsettled;
+                }
                 let pair = &mut self.pairs[other];
                 pair.other.note(contract, rule, line, sighting(other), now);
                 pair.pass::<R>(contract, rule, right, &self.presence);
@@ -200,7 +199,7 @@ impl<const N: usize> Watch<N> {
         let zone = zone();
         self.claims = 0;
         for other in (0..N).filter(|&other| other != own) {
-            let right = setting.rights[own][other];
+            let right = setting.right_of(own, other);
             let pair = &mut self.pairs[other];
             let mut claims = pair.claims(contract, rule, right, &self.presence);
             if let (Glance::Seen(error, _), true) = (glance, claims != u8::MAX) {

@@ -82,8 +82,8 @@ def _parser() -> argparse.ArgumentParser:
     option(
         "--intent",
         choices=INTENTS,
-        default="hidden",
-        help="whether others' turns are known, as by radio, or hidden until they are inside",
+        default="indicated",
+        help="what is known of where others turn: what they indicate, nothing until they are inside, or all, as by radio",
     )
     option("--stops", choices=("on", "off"), default="off", help="whether stop signs are obeyed")
     option("--step", type=float, default=0.1, metavar="S", help="the contract's period")

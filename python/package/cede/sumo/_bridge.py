@@ -18,7 +18,11 @@ from ._measures import CRITICAL, STANDING, STUCK, Measures
 from ._network import MOST_CANDIDATES, STOPS, Movement, Network, Site, Stretch
 
 DRIVERS = ("cede", "profile", "sumo")
-INTENTS = ("hidden", "known")
+INTENTS = ("indicated", "hidden", "known")
+INDICATED = 80.0
+"""Metres before its line from which a vehicle that turns has its indicators on; SUMO: 100 m."""
+_INDICATORS = {0: "straight", 1: "right", 2: "left"}
+"""The turn that SUMO's signals say."""
 
 AT_LINE = 2.0
 """Metres before its line from which a vehicle that stands is at it."""
@@ -48,8 +52,9 @@ class Settings:
     policy: Policy | None = None
     stops: bool = False
     """Whether stop signs are obeyed; otherwise only the shield stops a vehicle."""
-    intent: str = "hidden"
-    """Whether others' turns are `"known"`, as by radio, or `"hidden"` until they are inside."""
+    intent: str = "indicated"
+    """Whether others' turns are `"indicated"`, so that their indicators are believed, `"known"`, as
+    by radio, or `"hidden"` until they are inside."""
 
     def check(self) -> None:
         """Raise what is out of its range."""
@@ -297,9 +302,7 @@ class Bridge:
         """The vehicle on every path that its lane belongs to."""
         places = site.on_lane[car.lane]
         if len(places) > 1 and car.site is site:
-            told = self.settings.intent == "known" or car.lane == car.movement.outgoing
-            if told:
-                places = [place for place in places if place[0] is car.movement] or places
+            places = [place for place in places if self._may_take(car, place[0])] or places
         candidates, rate = [], 1.0
         for movement, stretch in places[:MOST_CANDIDATES]:
             front = _front(car, stretch)
@@ -311,6 +314,15 @@ class Bridge:
         (path, s), *others = candidates
         vehicle = site.junction.vehicle(path, s, car.speed * rate)
         return Track(car.number, path, vehicle, or_on=others)
+
+    def _may_take(self, car: Car, movement: Movement) -> bool:
+        """Whether others have to expect the vehicle on this movement."""
+        if self.settings.intent == "known" or car.lane == car.movement.outgoing:
+            return movement is car.movement
+        if self.settings.intent == "hidden" or car.s < car.movement.line - INDICATED:
+            return True
+        signals = self.sumo.vehicle.getSignals(car.name)
+        return movement.direction == _INDICATORS.get(signals & 3, movement.direction)
 
     def _follow(self, car: Car) -> None:
         """Bring a vehicle's own path and place on it up to date."""

@@ -25,6 +25,9 @@ TYPES = (
 STOPS = "sw"
 """States of a connection at which a vehicle stops before it goes: a stop sign, an all-way stop."""
 
+DIRECTIONS = {"l": "left", "L": "left", "t": "left", "r": "right", "R": "right"}
+"""Where a connection turns, by SUMO's letter: a turn at all, slight ones included, is indicated."""
+
 MOST_CANDIDATES = 4
 """Ways that a lane may lead: a track has so many candidate paths."""
 
@@ -68,6 +71,8 @@ class Movement:
     outgoing: str
     to_edge: str
     state: str
+    direction: str
+    """Where it turns: `"left"`, `"right"` or `"straight"`."""
     stretches: tuple[Stretch, ...]
     length: float
     line: float
@@ -203,6 +208,7 @@ class Network:
             outgoing=connection.getToLane().getID(),
             to_edge=connection.getTo().getID(),
             state=connection.getState(),
+            direction=DIRECTIONS.get(connection.getDirection(), "straight"),
             stretches=tuple(way.stretches),
             length=float(way.arc[-1]),
             line=way.line,

@@ -5,7 +5,7 @@
 
 use super::super::super::contract::{Contract, Precedence};
 use super::super::super::rules::Rules;
-use super::super::{RightOfWay, has};
+use super::super::{Priority, RightOfWay, has};
 use super::watcher::{LINE, State, Watcher, contract};
 use crate::instant::Instant;
 use proptest::prelude::*;
@@ -40,6 +40,7 @@ type Manner = (usize, f32);
 pub(super) struct Story {
     contract: Contract,
     rights: [RightOfWay; 2],
+    priority: Priority,
     motions: [Vec<State>; 2],
     /// Steps by which the second one's calls are later.
     phase: usize,
@@ -91,6 +92,9 @@ prop_compose! {
         manners in [manners(), manners()], seed in any::<u64>(),
         phase in 0..GRAIN, jitter in prop_oneof![2 => Just(0), 1 => Just(1)],
         late in prop_oneof![2 => Just(0), 1 => 0_usize..120], misses in any::<bool>(),
+        priority in prop_oneof![
+            2 => Just(Priority::FirstCome), 2 => Just(Priority::Unsigned), 1 => Just(Priority::Signed)
+        ],
     ) -> Story {
         use RightOfWay::{Ego, Other, Unsettled};
         Story {
@@ -101,6 +105,7 @@ prop_compose! {
                 ..contract(patience, tie)
             },
             rights: [[Ego, Other], [Other, Ego], [Unsettled; 2]][right],
+            priority,
             motions: [0, 1].map(|i| motion(starts[i], &manners[i])),
             phase,
             jitter,
@@ -171,7 +176,7 @@ struct Caller {
 
 impl Caller {
     fn new(story: &Story, i: usize, fault: Fault) -> Self {
-        let mut watcher = Watcher::new(story.contract, story.rights[i]);
+        let mut watcher = Watcher::under(story.contract, story.rights[i], story.priority);
         watcher.hasty = fault == Fault::Motion;
         let calls = if i == 0 { story.starts } else { 0 };
         if fault == Fault::Late && calls > 0 {

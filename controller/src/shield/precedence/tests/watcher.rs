@@ -4,9 +4,9 @@ use super::super::super::bounds::Bounds;
 use super::super::super::contract::{Contract, Precedence};
 use super::super::super::rules::Rules;
 use super::super::super::waiting::{Presence, RestState, Sighting};
-use super::super::{ALL, PairMemory, ZoneSet};
+use super::super::{ALL, PairMemory, Right, ZoneSet};
 use crate::instant::Instant;
-use crate::junction::RightOfWay;
+use crate::junction::{Priority, RightOfWay};
 use crate::junction::conflict::ConflictKind;
 use crate::junction::zone::{FAR, Span, Zone};
 
@@ -49,7 +49,7 @@ pub(super) fn zone() -> Zone {
 #[derive(Clone, Debug)]
 pub(super) struct Watcher {
     contract: Contract,
-    right: RightOfWay,
+    right: Right,
     pub(super) presence: Presence,
     pub(super) pair: PairMemory,
     /// As the other was seen last, and when.
@@ -63,6 +63,16 @@ pub(super) struct Watcher {
 
 impl Watcher {
     pub(super) fn new(contract: Contract, right: RightOfWay) -> Self {
+        Self::under(contract, right, Priority::FirstCome)
+    }
+
+    /// One whose right of way counts as `priority` says.
+    pub(super) fn under(contract: Contract, right: RightOfWay, priority: Priority) -> Self {
+        let right = Right {
+            of_way: right,
+            priority,
+            in_turns: right,
+        };
         Self {
             contract,
             right,
