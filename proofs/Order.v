@@ -177,7 +177,6 @@ Proof.
     (3 := tp) (4 := tq); auto.
   - apply (right_of_way_agrees p q both_L_q gives_way).
   - pose proof (right_of_way_agrees q p both_L_p (negb gives_way)) as A. rewrite Bool.negb_involutive in A. exact A.
-  - intros a b _ cb. exact (none b cb).
 Qed.
 End Two.
 End Order.

@@ -278,7 +278,7 @@ Hypothesis first_gap : lane z = Datatypes.true -> is_ahead k l b z since ->
 Hypothesis yields : gives_way k z s tau l c t w claimed since.
 
 (* D13: the other stays out of a zone that is opened. *)
-Lemma safe_by_precedence i0 i u : (since <= i0 <= i)%nat -> opened_at k l b z claimed i0 ->
+Lemma safe_by_precedence i0 i u : (since <= i0 <= i)%nat -> opened_at k b z claimed i0 ->
   (forall j, (i0 <= j < i)%nat -> carries_on k l c j) -> tau i0 <= u <= tau (S i) -> ~ inside z (s u) (t u).
 Proof.
   intros h (cl & stop) carried hu (_ & [tin _] & [_ led]).

@@ -15,6 +15,9 @@ use heapless::Vec;
 /// Every zone of every other, and what is closed.
 const CAPACITY: usize = MAX_OTHERS * MAX_ZONES + 1;
 
+/// An ego that comes to rest no farther beyond its line than this (m) waits at it.
+const BEYOND: f32 = 1.0;
+
 /// A zone that the ego has not cleared and the other has not left.
 ///
 /// All distances are metres from where the ego is, sensing errors included on the safe side.
@@ -91,7 +94,6 @@ impl Hazards {
     ) {
         // From where the first zone that precedence opens begins to where the last one ends.
         let mut open = [FAR, -FAR];
-        let line = line_ahead(contract, way, ego);
         for (place, other) in (0_u8..).zip(tracks.iter()) {
             let Some(conflict) = way.conflict(other.path) else {
                 continue;
@@ -107,12 +109,10 @@ impl Hazards {
                 let clear = clear_of::<R>(conflict, zone, ego, other);
                 let clear = clear - ego.s - contract.position_error;
                 let waits = !zone.is_lane() && clear >= 0.0;
-                let rest = if waits { clear } else { hazard.rest };
-                let follows = matches!(hazard.passage, Passage::Never);
                 self.insert::<R>(Hazard {
                     place,
                     yields: conflict.right_of_way == RightOfWay::Other,
-                    rest: if follows { rest } else { Real::min(rest, line) },
+                    rest: if waits { clear } else { hazard.rest },
                     ..hazard
                 });
             }
@@ -137,6 +137,21 @@ impl Hazards {
                 hazard.rest = Real::min(hazard.rest, from);
             }
         }
+    }
+
+    /// The ego waits at its line, `line` metres ahead, for everybody but those that it follows: inside the junction it
+    /// would be in the way of others. It comes to rest `stop` metres ahead at the earliest; once that is too far beyond
+    /// the line, it is on its way.
+    pub(crate) fn wait_at(&mut self, line: f32, stop: f32) {
+        if stop > line + BEYOND {
+            return;
+        }
+        for hazard in &mut self.sorted {
+            if !matches!(hazard.passage, Passage::Never) {
+                hazard.rest = Real::min(hazard.rest, Real::max(line, stop));
+            }
+        }
+        self.look_beyond();
     }
 
     pub(crate) fn iter(&self) -> impl Iterator<Item = &Hazard> {
@@ -209,15 +224,6 @@ pub(super) fn of<'z, R: Rules>(
         let hazard = hazard::<R>(contract, (index, zone), ego, other, arrives)?;
         Some((zone, hazard))
     })
-}
-
-/// Metres to the line at which the ego has to wait, if it has not passed it; far, if it has none.
-///
-/// An ego that waits there, and not between zones inside the junction, is in nobody's way.
-fn line_ahead(contract: &Contract, way: Way<'_>, ego: &Own) -> f32 {
-    let path = way.path(way.ego()).filter(|path| path.waits_at_line());
-    let ahead = path.map_or(FAR, |path| path.line() - ego.s - contract.position_error);
-    if ahead >= 0.0 { ahead } else { FAR }
 }
 
 /// Arc length (m) at which the ego waits for `other` before the crossing `zone`: where crossings of the two follow each other without

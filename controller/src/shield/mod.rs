@@ -321,6 +321,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         hazards.add::<N, R>(contract, self.way, (&ego, &next.tracks), findings.closed);
         let inherited = &self.memory.inherited(contract, now);
         let most = most(contract, ego.speed, inherited.bounds()[1]);
+        wait_at_line::<R>(contract, self.way, &ego, (inherited, most), &mut hazards);
         let scene = Scene {
             ego: &ego,
             hazards: &hazards,
@@ -366,11 +367,14 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         settle::<N, R>(contract, self.way, &ego, &mut tracks);
         let mut hazards = Hazards::new();
         hazards.add::<N, R>(contract, self.way, (&ego, &tracks), findings.closed);
+        let inherited = &Inherited::all(contract, [previous; 2]);
+        let most = most(contract, ego.speed, previous);
+        wait_at_line::<R>(contract, self.way, &ego, (inherited, most), &mut hazards);
         let scene = Scene {
             ego: &ego,
             hazards: &hazards,
-            inherited: &Inherited::all(contract, [previous; 2]),
-            most: most(contract, ego.speed, previous),
+            inherited,
+            most,
         };
         let acceleration = allowed(&contract.ego, scene.most, acceleration);
         Ok(scene.check::<R>(contract, acceleration).margin)
@@ -538,11 +542,14 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
             findings.closed,
         );
         let inherited = &self.memory.inherited(&self.contract, now);
+        let most = most(&self.contract, ego.speed, inherited.bounds()[1]);
+        let acts = (inherited, most);
+        wait_at_line::<R>(&self.contract, self.way, ego, acts, &mut hazards);
         let scene = Scene {
             ego,
             hazards: &hazards,
             inherited,
-            most: most(&self.contract, ego.speed, inherited.bounds()[1]),
+            most,
         };
         self.verify_again(&scene, now, deviated || recheck);
         let breach = if deviated {
@@ -679,6 +686,23 @@ const fn next(contract: &Contract, plan: Plan) -> f32 {
     } else {
         -contract.ego.braking
     }
+}
+
+/// Has the ego wait at its line, if the junction was told it.
+fn wait_at_line<R: Rules>(
+    contract: &Contract,
+    way: Way<'_>,
+    ego: &Own,
+    (inherited, most): (&Inherited<f32>, f32),
+    hazards: &mut Hazards,
+) {
+    let Some(path) = way.path(way.ego()).filter(|path| path.waits_at_line()) else {
+        return;
+    };
+    let brakes = allowed(&contract.ego, most, -contract.ego.braking);
+    let departure = R::departure(contract, ego.speed, inherited, brakes);
+    let stop = R::rest(contract, departure.braking, 0.0) + contract.slack;
+    hazards.wait_at(path.line() - ego.s - contract.position_error, stop);
 }
 
 /// Which of the ego and an other on `path` goes first; nothing, if they do not meet.
