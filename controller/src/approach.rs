@@ -136,21 +136,48 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
 
     /// The ego's acceleration for the period that begins `now`. To be called once a period.
     ///
-    /// The policy is asked about the nearest `N` of those whom the ego has yet to meet, the most restrictive of its
-    /// proposals passes to the shield, and the shield considers everybody at once. With nobody left to
-    /// meet, the ego accelerates gently up to the contract's speed. See [`Shield::filter`].
+    /// The policy is asked about the nearest `N` of those whom the ego has yet to meet and over whom it has no precedence,
+    /// the most restrictive of its proposals passes to the shield, and the shield considers everybody at once. With nobody
+    /// to ask about, the ego accelerates gently up to the contract's speed. See [`Shield::filter`].
     ///
     /// Cost: at most `N` passes through the network, and the shield's. The
     /// acceleration is finite and within the contract's, whatever the bits of the observation.
     pub fn decide(&mut self, now: Instant, observation: &Observation<'_>) -> Decision {
-        let mut proposal = 0.0;
+        self.decide_for(now, observation, |asked| asked.unwrap_or(FREE))
+    }
+
+    /// [`Approach::decide`] for a vehicle that has a driver of its own for everything but the others at the junction, of
+    /// its speed limit, curves and leader for example: no more than `most` (m/s²) is proposed, and `most` where there is
+    /// nobody to ask about. NaN counts as full braking.
+    pub fn decide_up_to(
+        &mut self,
+        now: Instant,
+        observation: &Observation<'_>,
+        most: f32,
+    ) -> Decision {
+        let within = |asked: f32| if asked < most { asked } else { most };
+        self.decide_for(now, observation, |asked| asked.map_or(most, within))
+    }
+
+    fn decide_for(
+        &mut self,
+        now: Instant,
+        observation: &Observation<'_>,
+        proposal: impl Fn(Option<f32>) -> f32,
+    ) -> Decision {
+        let mut proposed = 0.0;
         if self.shield.is_new(now) {
             // The shield finds a fault again and carries on with its plan.
-            (proposal, self.prediction) = self.ask(observation).unwrap_or((0.0, None));
+            if let Ok(asked) = self.ask(observation) {
+                self.prediction = asked.map(|(_, prediction)| prediction);
+                proposed = proposal(asked.map(|(acceleration, _)| acceleration));
+            } else {
+                self.prediction = None;
+            }
         }
         Decision {
             prediction: self.prediction,
-            ..self.shield.filter(now, observation, proposal)
+            ..self.shield.filter(now, observation, proposed)
         }
     }
 
@@ -160,13 +187,14 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
     ///
     /// Cost: at most `N` passes through the network. Finite and within ± 3.
     pub fn proposal(&mut self, observation: &Observation<'_>) -> f32 {
-        self.ask(observation)
-            .map_or(0.0, |(acceleration, _)| acceleration)
+        self.ask(observation).map_or(0.0, |asked| {
+            asked.map_or(FREE, |(acceleration, _)| acceleration)
+        })
     }
 
     /// What the policy proposes. Not inlined, because its stack is free again when the shield needs its own.
     #[inline(never)]
-    fn ask(&mut self, observation: &Observation<'_>) -> Result<(f32, Option<Prediction>), Fault> {
+    fn ask(&mut self, observation: &Observation<'_>) -> Result<Option<(f32, Prediction)>, Fault> {
         let (way, contract) = (self.shield.way(), self.shield.contract());
         let ego = door::ego(way, contract, &observation.ego)?;
         let nearby = nearby::<N>(way, contract, &ego, observation.tracks);
@@ -178,12 +206,13 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
         way: Way<'j>,
         ego: &Vehicle,
         nearby: &Vec<Nearby<'j>, N>,
-    ) -> (f32, Option<Prediction>) {
-        let mut proposal = (FREE, None);
-        let Some(mine) = way.path(way.ego()) else {
-            return proposal;
-        };
+    ) -> Option<(f32, Prediction)> {
+        let mut proposal: Option<(f32, Prediction)> = None;
+        let mine = way.path(way.ego())?;
         for other in nearby.iter().filter(|other| other.meets(ego)) {
+            if self.shield.goes_before(other.number) {
+                continue;
+            }
             let traffic = traffic(ego, nearby, other.number).nearest(self.around);
             let last_svo = self.orientation(other.number);
             let pair = Pair {
@@ -201,13 +230,13 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
             let svo = pair.svo();
             self.remember(other.number, svo, nearby);
             let [acceleration, expected] = self.policy.act(&pair);
-            if acceleration < proposal.0 || proposal.1.is_none() {
+            if proposal.is_none_or(|(least, _)| acceleration < least) {
                 let prediction = Prediction {
                     other: other.number,
                     svo,
                     acceleration: expected,
                 };
-                proposal = (acceleration, Some(prediction));
+                proposal = Some((acceleration, prediction));
             }
         }
         proposal
@@ -391,14 +420,14 @@ mod tests {
                 ego: on(&site, 0, 0.0, 5.0),
                 tracks: &tracks,
             };
-            approach.ask(&seen).unwrap()
+            approach.ask(&seen).unwrap().unwrap()
         };
         let (a, c) = ((1, 5.0, 4.0), (3, 20.0, 9.0));
         let (first, third, both) = (decide(&[a]), decide(&[c]), decide(&[a, c]));
         let least = if first.0 < third.0 { first } else { third };
         assert_eq!(both, least);
-        assert_eq!(first.1.unwrap().other, 101);
-        assert_eq!(third.1.unwrap().other, 103);
+        assert_eq!(first.1.other, 101);
+        assert_eq!(third.1.other, 103);
     }
 
     #[test]

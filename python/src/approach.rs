@@ -70,16 +70,23 @@ pub(crate) struct Approach(Entered);
 #[pymethods]
 impl Approach {
     /// The ego's acceleration for the period that begins `now` (s). To be called once a period.
-    #[pyo3(signature = (now, ego, tracks = Vec::new()))]
-    fn decide(&mut self, now: f64, ego: Vehicle, tracks: Vec<Track>) -> PyResult<Decision> {
+    #[pyo3(signature = (now, ego, tracks = Vec::new(), most = None))]
+    fn decide(
+        &mut self,
+        now: f64,
+        ego: Vehicle,
+        tracks: Vec<Track>,
+        most: Option<f32>,
+    ) -> PyResult<Decision> {
         let (now, tracks) = (instant(now)?, sensed(&tracks));
         let seen = Observation {
             ego: ego.state(),
             tracks: &tracks,
         };
-        let decided = self
-            .0
-            .with_dependent_mut(|_, approach| approach.decide(now, &seen));
+        let decided = self.0.with_dependent_mut(|_, approach| match most {
+            Some(most) => approach.decide_up_to(now, &seen, most),
+            None => approach.decide(now, &seen),
+        });
         Ok(Decision(decided))
     }
 

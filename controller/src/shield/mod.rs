@@ -228,6 +228,14 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         self.memory.plan()
     }
 
+    /// Whether the ego has precedence over track `number`, on every path that it may be on, since the last decision.
+    #[must_use]
+    pub fn goes_before(&self, number: u16) -> bool {
+        let mut claims = (self.tracks.iter().filter(|other| other.number == number))
+            .map(|other| other.claims == precedence::ALL);
+        claims.next().is_some_and(|first| first && claims.all(|it| it))
+    }
+
     /// Assumes `contract` from the next decision on. The remembered plan is kept if it is safe under it.
     ///
     /// # Errors

@@ -246,8 +246,17 @@ class Drive:
 class Approach:
     """One vehicle on its way through one junction."""
 
-    def decide(self, now: float, ego: Vehicle, tracks: Sequence[Track] = ...) -> Decision:
-        """The ego's acceleration for the period that begins `now` (s). Call it once a period."""
+    def decide(
+        self,
+        now: float,
+        ego: Vehicle,
+        tracks: Sequence[Track] = ...,
+        most: float | None = None,
+    ) -> Decision:
+        """The ego's acceleration for the period that begins `now` (s). Call it once a period.
+
+        `most` (m/s²) is what the vehicle's own driver allows, for its speed limit or leader.
+        """
     def ready(self, now: float, ego: Vehicle, tracks: Sequence[Track] = ...) -> float:
         """Metres to spare of the best plan before control is handed over; raises without one."""
     def proposal(self, ego: Vehicle, tracks: Sequence[Track] = ...) -> float:

@@ -385,17 +385,20 @@ class Bridge:
             return
         self._forget(car, {track.number for track in tracks})
         wanted = self._profile(car)
-        if car.approach is not None:
-            wanted = min(wanted, car.approach.proposal(ego, tracks))
         measures = self.measures
         measures.decisions += 1
         if self.settings.shield:
-            decision = car.shield.filter(now, ego, tracks, wanted)
+            if car.approach is not None:
+                decision = car.approach.decide(now, ego, tracks, wanted)
+            else:
+                decision = car.shield.filter(now, ego, tracks, wanted)
             wanted = decision.acceleration
-            car.last = decision
             measures.shielded += decision.cause != "policy"
             measures.no_plan += decision.no_plan
             measures.breaches += decision.breach is not None
+            car.last = decision
+        elif car.approach is not None:
+            wanted = min(wanted, car.approach.proposal(ego, tracks))
         self._command(car, max(0.0, ego.speed + wanted * self.settings.step))
 
     def _command(self, car: Car, speed: float) -> None:
@@ -408,7 +411,7 @@ class Bridge:
     def _forget(car: Car, numbers: set[int]) -> None:
         """Nothing is hidden here: who is not seen any more is gone."""
         for number in car.known - numbers:
-            car.shield.forget(number)
+            (car.approach or car.shield).forget(number)
         car.known = numbers
 
     def _take_over(self, car: Car, now: float, ego: Any, tracks: list[Track]) -> bool:
