@@ -367,10 +367,9 @@ fn behind_a_leader_the_ego_can_always_stop() {
     assert!(accepts(14.0, 0.0) && !accepts(13.0, 3.0));
 }
 
-/// At any distance, precedence would let the ego run into one that had entered the lane ahead
-/// of it, with a safe gap, and braked there.
+/// Until it has arrived, one that has to wait may enter the lane ahead of it, with a safe gap.
 #[test]
-fn precedence_into_a_lane_is_granted_only_where_the_other_cannot_enter_ahead() {
+fn precedence_opens_a_lane_once_the_ego_has_arrived() {
     let site = site(&[east(), ramp()]);
     let lane = zone(&site, 1);
     let passage = |own: f32| {
@@ -378,10 +377,52 @@ fn precedence_into_a_lane_is_granted_only_where_the_other_cannot_enter_ahead() {
         let hazards = hazards(&site, &Contract::ALL_WAY_STOP, [own, 0.0], &[other]);
         hazards.iter().next().map(|hazard| hazard.passage)
     };
-    let line = lane.other.from + lane.lead.from;
-    assert!(line < lane.ego.from);
-    assert!(matches!(passage(line - 0.1), Some(Passage::Ahead { .. })));
-    assert_eq!(passage(line + 0.1), None);
+    let arrival = site.path(EGO).unwrap().line() - Precedence::ALL_WAY_STOP.distance;
+    assert!(matches!(passage(arrival - 0.1), Some(Passage::Ahead { .. })));
+    assert_eq!(passage(arrival + 0.1), None);
+}
+
+/// One that has arrived may count on the ego to stay out of the lane. Without a rule of precedence nobody does.
+#[test]
+fn without_precedence_the_ego_enters_a_lane_only_before_the_other_can_arrive() {
+    let site = site(&[east(), ramp()]);
+    let lane = zone(&site, 1);
+    let line = site.path(PathId::new(1)).unwrap().line();
+    let arrives = |contract: &Contract, before: f32, claims| {
+        let other = (1, [line - before, 0.0], claims);
+        let own = [lane.ego.from - 5.0, 8.0];
+        let hazards = hazards(&site, contract, own, &[other]);
+        match hazards.iter().next().map(|hazard| hazard.passage) {
+            Some(Passage::Ahead { arrives, .. }) => arrives,
+            other => panic!("{other:?}"),
+        }
+    };
+    let all_way = &Contract::ALL_WAY_STOP;
+    assert!((arrives(all_way, 30.0, 0) - 18.0).abs() < 1e-3);
+    assert!(arrives(all_way, 5.0, 0) < 0.0);
+    assert_eq!(arrives(&Contract::WORST_CASE, 5.0, 0), FAR);
+}
+
+/// A line that the junction is told, and the ego's rest.
+#[test]
+fn the_ego_waits_at_its_line_unless_it_is_far_beyond_it() {
+    let mut hazards = hazards(
+        &crossing(),
+        &Contract::WORST_CASE,
+        [zone(&crossing(), 1).ego.from - 20.0, 0.0],
+        &[(1, [20.0, 5.0], 0)],
+    );
+    let rest = |hazards: &Hazards| hazards.nearest_rest();
+    assert!((rest(&hazards) - 20.0).abs() < 0.2);
+    // 15 m to the line, and it can stop after 2 m.
+    hazards.wait_at(15.0, 2.0);
+    assert_eq!(rest(&hazards), 15.0);
+    // It has crept over its line.
+    hazards.wait_at(-0.1, 0.05);
+    assert_eq!(rest(&hazards), 0.05);
+    let before = hazards.clone();
+    hazards.wait_at(3.0, 4.5);
+    assert_eq!(hazards, before);
 }
 
 /// An ego that had to clear also the zones in which it has precedence would wait before a crossing

@@ -7,7 +7,7 @@ use crate::rng::Rng;
 use crate::shared::Shared;
 use crate::sketch::{Kind, Way};
 use cede_controller::{
-    Class, Footprint, Junction, JunctionError, PathId, Point, Route, RouteError, Zone,
+    Class, Footprint, Junction, JunctionError, PathId, Priority, Point, Route, RouteError, Zone,
 };
 use std::sync::OnceLock;
 
@@ -75,6 +75,8 @@ pub struct Site {
     shared: Vec<OnceLock<Vec<Shared>>>,
     /// Whose vehicles go first in a tie: the lanes in order. None: nobody's.
     pub order: Option<Vec<usize>>,
+    /// When that counts.
+    pub priority: Priority,
     /// How far vehicles may be from their lanes.
     pub tolerance: f64,
 }
@@ -114,6 +116,20 @@ impl Site {
     /// # Errors
     /// What the controller refuses.
     pub fn new(ways: &[Way], tolerance: f64, order: Option<Vec<usize>>) -> Result<Self, Refusal> {
+        Self::with_lines(ways, tolerance, (order, Priority::FirstCome), None)
+    }
+
+    /// The same with an order that counts as the priority says. The junctions are told lines, so many metres before the
+    /// first zones.
+    ///
+    /// # Errors
+    /// What the controller refuses.
+    pub fn with_lines(
+        ways: &[Way],
+        tolerance: f64,
+        (order, priority): (Option<Vec<usize>>, Priority),
+        back: Option<f64>,
+    ) -> Result<Self, Refusal> {
         let count = ways
             .iter()
             .flat_map(|way| &way.cuts)
@@ -124,15 +140,21 @@ impl Site {
             areas: vec![Vec::new(); ways.len() * ways.len()],
             shared: vec![OnceLock::new(); ways.len() * ways.len()],
             order,
+            priority,
             tolerance,
         };
         for junction in 0..count.max().unwrap_or(0) {
-            site.add_junction(ways, junction)?;
+            site.add_junction(ways, junction, back)?;
         }
         Ok(site)
     }
 
-    fn add_junction(&mut self, ways: &[Way], junction: usize) -> Result<(), Refusal> {
+    fn add_junction(
+        &mut self,
+        ways: &[Way],
+        junction: usize,
+        back: Option<f64>,
+    ) -> Result<(), Refusal> {
         let mut builder = Room::builder();
         builder.tolerance(self.tolerance as f32);
         let mut there = Vec::new();
@@ -163,8 +185,15 @@ impl Site {
         for &(a, leg_a) in &there {
             for &(b, leg_b) in &there {
                 if a != b && rank(a).zip(rank(b)).is_some_and(|(a, b)| a < b) {
-                    builder.right_of_way(leg_a.path, leg_b.path)?;
+                    builder.priority(leg_a.path, leg_b.path, self.priority)?;
                 }
+            }
+        }
+        if let Some(back) = back {
+            let first_zones = builder.clone().build()?;
+            for (_, leg) in &there {
+                let line = first_zones.path(leg.path).map_or(0.0, |path| path.line());
+                builder.line(leg.path, (line - back as f32).max(0.0))?;
             }
         }
         let built = Box::new(builder.build()?);

@@ -321,6 +321,7 @@ impl<'s, R: Rules + Clone> World<'s, R> {
                 ego_line: self.lines[j],
                 line: self.lines[i],
                 first: site.goes_first(me.lane, ego.lane),
+                priority: site.priority,
             };
             let duty = &mut self.duties[i * count + j];
             limit = duty.limit(&self.numbers, &meeting, tick as f64 * TICK, limit);

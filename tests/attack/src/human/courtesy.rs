@@ -8,6 +8,7 @@ use crate::motion::{State, TICK};
 use crate::numbers::{Numbers, Rule};
 use crate::shared::{EARLY, Shared};
 use crate::site::Area;
+use cede_controller::Priority;
 
 /// What one human owes one shielded vehicle, and what it remembers for that.
 #[derive(Clone, Debug, Default)]
@@ -109,8 +110,10 @@ pub struct Meeting<'a> {
     pub ego_line: f64,
     /// Where the human waits.
     pub line: f64,
-    /// Whether the human goes before the ego in a tie.
+    /// Whether the human has the right of way over the ego.
     pub first: Option<bool>,
+    /// When that counts.
+    pub priority: Priority,
 }
 
 impl Duty {
@@ -127,7 +130,7 @@ impl Duty {
         if let Some(rule) = numbers.rule {
             self.note(numbers, rule, meeting, time);
             if self.yields(numbers, rule, meeting) {
-                limit = stay_out(numbers, rule, meeting, limit);
+                limit = stay_out(numbers, rule, meeting, (limit, self.ego_arrived.is_some()));
             }
         }
         limit
@@ -169,6 +172,12 @@ impl Duty {
 
     /// Whether the ego may have precedence.
     fn yields(&self, numbers: &Numbers, rule: Rule, meeting: &Meeting<'_>) -> bool {
+        // Without any order nobody has told the junction anything.
+        if let (Some(first), Priority::Unsigned | Priority::Signed) =
+            (meeting.first, meeting.priority)
+        {
+            return self.waited || !first;
+        }
         let Some(ego) = self.ego_arrived else {
             return false;
         };
@@ -185,11 +194,16 @@ impl Duty {
     }
 }
 
-/// C7: it stays out of every zone before which it can still stop.
-fn stay_out(numbers: &Numbers, rule: Rule, meeting: &Meeting<'_>, wanted: f64) -> f64 {
+/// C7: it stays out of every zone before which it can still stop; of lanes once the ego has arrived.
+fn stay_out(
+    numbers: &Numbers,
+    rule: Rule,
+    meeting: &Meeting<'_>,
+    (wanted, ego_arrived): (f64, bool),
+) -> f64 {
     let (ego, me) = (meeting.ego, meeting.me);
     let mut limit = wanted;
-    for area in meeting.areas {
+    for area in meeting.areas.iter().filter(|area| ego_arrived || !area.lane) {
         let over = ego.s >= area.ego[1] || me.s >= area.other[1];
         // Arc lengths of the controller are f32: their places are off by some micrometres.
         let edge = area.other[0] - 1e-3;

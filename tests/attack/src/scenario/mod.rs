@@ -12,6 +12,7 @@ pub use terms::Terms;
 use crate::rng::Rng;
 use crate::setup::{Outside, Setup};
 use crate::site::Site;
+use cede_controller::Priority;
 
 /// So many scenarios in a row have one site, because a site costs more than a scenario.
 pub const SHARE: u64 = 32;
@@ -35,7 +36,9 @@ impl Family {
             let tolerance = rng.pick(&[0.0, 0.1, 0.1, 0.3]);
             let order = (self.ordered && rng.chance(0.85))
                 .then(|| Site::random_order(ways.len(), &mut rng));
-            Site::new(&ways, tolerance, order)
+            let priority = rng.pick(&[Priority::FirstCome, Priority::Unsigned, Priority::Signed]);
+            let back = rng.pick(&[None, None, Some(0.0), Some(0.5), Some(3.0)]);
+            Site::with_lines(&ways, tolerance, (order, priority), back)
                 .ok()
                 .filter(|site| site.lanes.len() >= 2)
         })
