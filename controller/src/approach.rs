@@ -15,6 +15,9 @@ use heapless::Vec;
 /// Acceleration (m/s²) that is proposed when there is nobody left to meet.
 pub const FREE: f32 = 1.0;
 
+/// An ego that is slower than this (m/s) and has precedence sets off.
+const SLOW: f32 = 2.0;
+
 /// What drives a vehicle, at every intersection: `'w` is the life of the policy's weights.
 #[derive(Clone, Copy, Debug)]
 pub struct Drive<'w> {
@@ -136,19 +139,21 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
 
     /// The ego's acceleration for the period that begins `now`. To be called once a period.
     ///
-    /// The policy is asked about the nearest `N` of those whom the ego has yet to meet and over whom it has no precedence,
-    /// the most restrictive of its proposals passes to the shield, and the shield considers everybody at once. With nobody
-    /// to ask about, the ego accelerates gently up to the contract's speed. See [`Shield::filter`].
+    /// The policy is asked about the nearest `N` of those whom the ego has yet to meet, the most restrictive of its
+    /// proposals passes to the shield, and the shield considers everybody at once. With nobody left to meet, the ego
+    /// accelerates gently up to the contract's speed. For those over whom it has precedence it does not brake, and sets
+    /// off. See [`Shield::filter`].
     ///
     /// Cost: at most `N` passes through the network, and the shield's. The
     /// acceleration is finite and within the contract's, whatever the bits of the observation.
     pub fn decide(&mut self, now: Instant, observation: &Observation<'_>) -> Decision {
-        self.decide_for(now, observation, |asked| asked.unwrap_or(FREE))
+        let first = if observation.ego.speed > SLOW { 0.0 } else { FREE };
+        self.decide_for(now, observation, first, |asked| asked.unwrap_or(FREE))
     }
 
     /// [`Approach::decide`] for a vehicle that has a driver of its own for everything but the others at the junction, of
-    /// its speed limit, curves and leader for example: no more than `most` (m/s²) is proposed, and `most` where there is
-    /// nobody to ask about. NaN counts as full braking.
+    /// its speed limit, curves and leader for example: no more than `most` (m/s²) is proposed, and `most` where nobody is
+    /// left to meet who goes first. NaN counts as full braking.
     pub fn decide_up_to(
         &mut self,
         now: Instant,
@@ -156,19 +161,20 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
         most: f32,
     ) -> Decision {
         let within = |asked: f32| if asked < most { asked } else { most };
-        self.decide_for(now, observation, |asked| asked.map_or(most, within))
+        self.decide_for(now, observation, most, |asked| asked.map_or(most, within))
     }
 
     fn decide_for(
         &mut self,
         now: Instant,
         observation: &Observation<'_>,
+        first: f32,
         proposal: impl Fn(Option<f32>) -> f32,
     ) -> Decision {
         let mut proposed = 0.0;
         if self.shield.is_new(now) {
             // The shield finds a fault again and carries on with its plan.
-            if let Ok(asked) = self.ask(observation) {
+            if let Ok(asked) = self.ask(observation, first) {
                 self.prediction = asked.map(|(_, prediction)| prediction);
                 proposed = proposal(asked.map(|(acceleration, _)| acceleration));
             } else {
@@ -187,18 +193,23 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
     ///
     /// Cost: at most `N` passes through the network. Finite and within ± 3.
     pub fn proposal(&mut self, observation: &Observation<'_>) -> f32 {
-        self.ask(observation).map_or(0.0, |asked| {
+        self.ask(observation, f32::MIN).map_or(0.0, |asked| {
             asked.map_or(FREE, |(acceleration, _)| acceleration)
         })
     }
 
-    /// What the policy proposes. Not inlined, because its stack is free again when the shield needs its own.
+    /// What the policy proposes, and at least `first` (m/s²) for those over whom the ego has precedence; nothing, if nobody
+    /// is left to meet. Not inlined, because its stack is free again when the shield needs its own.
     #[inline(never)]
-    fn ask(&mut self, observation: &Observation<'_>) -> Result<Option<(f32, Prediction)>, Fault> {
+    fn ask(
+        &mut self,
+        observation: &Observation<'_>,
+        first: f32,
+    ) -> Result<Option<(f32, Prediction)>, Fault> {
         let (way, contract) = (self.shield.way(), self.shield.contract());
         let ego = door::ego(way, contract, &observation.ego)?;
         let nearby = nearby::<N>(way, contract, &ego, observation.tracks);
-        Ok(self.propose(way, &ego, &nearby))
+        Ok(self.propose(way, &ego, &nearby, first))
     }
 
     fn propose(
@@ -206,13 +217,11 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
         way: Way<'j>,
         ego: &Vehicle,
         nearby: &Vec<Nearby<'j>, N>,
+        first: f32,
     ) -> Option<(f32, Prediction)> {
         let mut proposal: Option<(f32, Prediction)> = None;
         let mine = way.path(way.ego())?;
         for other in nearby.iter().filter(|other| other.meets(ego)) {
-            if self.shield.goes_before(other.number) {
-                continue;
-            }
             let traffic = traffic(ego, nearby, other.number).nearest(self.around);
             let last_svo = self.orientation(other.number);
             let pair = Pair {
@@ -229,7 +238,10 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
             };
             let svo = pair.svo();
             self.remember(other.number, svo, nearby);
-            let [acceleration, expected] = self.policy.act(&pair);
+            let [mut acceleration, expected] = self.policy.act(&pair);
+            if acceleration < first && self.shield.goes_before(other.number) {
+                acceleration = first;
+            }
             if proposal.is_none_or(|(least, _)| acceleration < least) {
                 let prediction = Prediction {
                     other: other.number,
@@ -420,7 +432,7 @@ mod tests {
                 ego: on(&site, 0, 0.0, 5.0),
                 tracks: &tracks,
             };
-            approach.ask(&seen).unwrap().unwrap()
+            approach.ask(&seen, FREE).unwrap().unwrap()
         };
         let (a, c) = ((1, 5.0, 4.0), (3, 20.0, 9.0));
         let (first, third, both) = (decide(&[a]), decide(&[c]), decide(&[a, c]));
