@@ -1,6 +1,6 @@
 """The table of docs/python.md: SUMO's drivers, the shield with a plain profile, and Cede.
 
-python python/benches/sumo.py [allway_stop priority …]
+python python/benches/sumo.py [allway_stop priority …], all seven types by default
 """
 
 import pathlib
@@ -12,9 +12,10 @@ sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "tests"))
 from test_sumo import netconvert
 
 from cede.sumo import Bridge, Network, Settings
+from cede.sumo._network import TYPES
 
-DEMANDS = (60.0, 200.0)
-SHARES = (0.1, 0.5, 1.0)
+DEMANDS = (60.0, 200.0, 300.0)
+SHARES = (0.5, 1.0)
 SECONDS = 300.0
 SEEDS = (0, 1)
 
@@ -60,4 +61,4 @@ def row(network, kind, demand, driver, share):
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:] or ["allway_stop", "priority", "right_before_left"])
+    main(sys.argv[1:] or TYPES)

@@ -359,6 +359,13 @@ impl Conflict {
         }
     }
 
+    /// When the right of way counts.
+    #[getter]
+    fn priority(&self) -> &'static str {
+        let found = PRIORITIES.iter().find(|(_, it)| *it == self.0.priority);
+        found.map_or("", |(name, _)| name)
+    }
+
     /// Where the footprints can touch: the kind, and from where to where (m) on either path.
     #[getter]
     fn zones(&self) -> Vec<(&'static str, Ends, Ends)> {

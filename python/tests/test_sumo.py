@@ -60,7 +60,15 @@ def test_a_junction_becomes_paths(tmp_path):
     assert min(left.limit) < 8.0 and min(straight.limit) == pytest.approx(13.89)
 
 
-KINDS = ("allway_stop", "priority", "priority_stop", "right_before_left", "unregulated")
+KINDS = (
+    "allway_stop",
+    "priority",
+    "priority_stop",
+    "right_before_left",
+    "left_before_right",
+    "unregulated",
+    "zipper",
+)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -78,6 +86,32 @@ def test_the_profile_brings_light_traffic_through_an_all_way_stop(tmp_path):
     sumo = run(net, driver="sumo", time=300.0, demand=60.0)
     assert shielded["arrived"] == sumo["arrived"] > 5
     assert (shielded["collisions"], shielded["stuck"], shielded["breaches"]) == (0, 0, 0)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("driver", ["profile", "cede"])
+def test_nobody_is_stuck_where_everybody_is_driven(tmp_path, kind, driver):
+    summary = run(netconvert(tmp_path, kind), driver=driver, time=200.0, demand=200.0)
+    assert (summary["collisions"], summary["stuck"]) == (0, 0)
+    sumo = run(netconvert(tmp_path, kind), driver="sumo", time=200.0, demand=200.0)
+    assert summary["arrived"] >= {"profile": 0.95, "cede": 0.4}[driver] * sumo["arrived"]
+
+
+@pytest.mark.parametrize("intent", ["hidden", "indicated", "known"])
+def test_turns_need_not_be_known(tmp_path, intent):
+    net = netconvert(tmp_path, "priority")
+    summary = run(net, driver="profile", intent=intent, time=200.0, demand=150.0, seed=1)
+    assert (summary["collisions"], summary["stuck"]) == (0, 0)
+    assert summary["arrived"] > 15
+
+
+def test_the_right_of_way_is_that_of_the_signs(tmp_path):
+    (site,) = Network(netconvert(tmp_path, "priority")).sites
+    by_ends = {(m.incoming, m.outgoing): m for m in site.movements}
+    major, minor = by_ends["WC_0", "CE_0"], by_ends["SC_0", "CN_0"]
+    conflict = site.junction.conflict(major.path, minor.path)
+    assert (conflict.right_of_way, conflict.priority) == ("ego", "signed")
+    assert (minor.direction, by_ends["SC_0", "CW_0"].direction) == ("straight", "left")
 
 
 def test_a_share_is_driven_and_a_number_of_egos(tmp_path):

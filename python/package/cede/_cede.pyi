@@ -225,6 +225,8 @@ class Conflict:
     @property
     def right_of_way(self) -> Literal["ego", "other", "unsettled"]: ...
     @property
+    def priority(self) -> Literal["first-come", "unsigned", "signed"]: ...
+    @property
     def zones(self) -> list[tuple[str, tuple[float, float], tuple[float, float]]]:
         """Where the footprints can touch: the kind, and from where to where (m) on either path."""
 

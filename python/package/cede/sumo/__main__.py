@@ -83,7 +83,8 @@ def _parser() -> argparse.ArgumentParser:
         "--intent",
         choices=INTENTS,
         default="indicated",
-        help="what is known of where others turn: what they indicate, nothing until they are inside, or all, as by radio",
+        help="what is known of where others turn: what they indicate, nothing until they are "
+        "inside, or everything, as by radio",
     )
     option("--stops", choices=("on", "off"), default="off", help="whether stop signs are obeyed")
     option("--step", type=float, default=0.1, metavar="S", help="the contract's period")

@@ -367,16 +367,6 @@ class Bridge:
         car.shield = car.approach = None
         car.known = set()
 
-    def _way(self, car: Car, site: Site) -> tuple[Movement, Stretch] | tuple[None, None]:
-        """The movement that the vehicle's route takes from its lane."""
-        vehicle = self.sumo.vehicle
-        route, index = vehicle.getRoute(car.name), vehicle.getRouteIndex(car.name)
-        following = route[index + 1] if 0 <= index < len(route) - 1 else None
-        for movement, stretch in site.on_lane[car.lane]:
-            if movement.incoming == car.lane and movement.to_edge == following:
-                return movement, stretch
-        return None, None
-
     # What it does.
 
     def _drive(self, car: Car, now: float, tracks: list[Track]) -> None:
@@ -396,7 +386,6 @@ class Bridge:
             measures.shielded += decision.cause != "policy"
             measures.no_plan += decision.no_plan
             measures.breaches += decision.breach is not None
-            car.last = decision
         elif car.approach is not None:
             wanted = min(wanted, car.approach.proposal(ego, tracks))
         self._command(car, max(0.0, ego.speed + wanted * self.settings.step))
@@ -416,7 +405,7 @@ class Bridge:
 
     def _take_over(self, car: Car, now: float, ego: Any, tracks: list[Track]) -> bool:
         """Take control over, if there is a safe plan."""
-        contract = self.settings.contract or _contract_of(car.site)
+        contract = self.settings.contract or self._contract(car.site)
         shield = Shield(car.site.junction, car.movement.path, contract)
         if self.settings.shield:
             try:
@@ -430,6 +419,10 @@ class Bridge:
             car.approach = drive.enter(car.site.junction, car.movement.path)
         self.sumo.vehicle.setSpeedMode(car.name, _NOTHING)
         return True
+
+    def _contract(self, site: Site) -> Contract:
+        settings = self.settings
+        return _contract_of(site, settings.share == 1.0 and settings.ego is None)
 
     def _profile(self, car: Car) -> float:
         """The acceleration (m/s²) of a plain profile: limits, curves, stop signs, the leader."""
@@ -481,19 +474,21 @@ def _stopping(speed: float, room: float, braking: float) -> float:
     return -needed if needed > 0.8 * braking else math.inf
 
 
-import json as _json
-_X = _json.loads(os.environ.get("CX", "{}"))
-
-
 def contract_named(name: str) -> Contract:
     """A contract by its name, with the errors of a vehicle's place on its path here.
 
     SUMO moves a vehicle's front bumper along its lanes; where these bend, its centre is a little
-    faster or slower than the front.
+    faster or slower than the front. `"sumo"` is an all-way stop's with the brakes of SUMO's own
+    vehicles: it can follow as near as they do.
     """
-    return Contract(name, position_error=0.05, speed_error=0.1, **_X)
+    errors = {"position_error": 0.05, "speed_error": 0.1}
+    if name == "sumo":
+        return Contract("all-way-stop", ego_braking=4.5, ego_emergency=8.0, **errors)
+    known = Contract(name)
+    return Contract(name, **{field: max(getattr(known, field), errors[field]) for field in errors})
 
 
-def _contract_of(site: Site) -> Contract:
-    """First come, first served where everybody stops; elsewhere nobody's courtesy is assumed."""
-    return contract_named("all-way-stop")
+def _contract_of(site: Site, all_driven: bool) -> Contract:
+    """The right of way holds, but where SUMO's own drivers do not know of any."""
+    kept = all_driven or site.kind != "unregulated"
+    return contract_named("sumo" if kept else "worst-case")
