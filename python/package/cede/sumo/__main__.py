@@ -75,8 +75,9 @@ def _parser() -> argparse.ArgumentParser:
     option(
         "--contract",
         metavar="NAME|FILE.toml",
-        help="worst-case, all-way-stop, or a file [default: all-way-stop at all-way stops, "
-        "else worst-case]",
+        help="sumo, or a named contract of `cede`, or a file [default: sumo, which is all-way-stop "
+        "with the brakes of SUMO's vehicles; worst-case beside SUMO's drivers at unregulated "
+        "junctions]",
     )
     option("--shield", choices=("on", "off"), default="on")
     option(
