@@ -259,13 +259,14 @@ fn fits(
     let here = covers(route, start);
     placed.iter().all(|(other_route, other)| {
         let apart = here.separation(&covers(other_route, other)) > 0.5;
-        let routes = [route, other_route].map(|route| (route, Footprint::PAPER));
+        // In the order of the scenario's junction: where two meet often, their zones depend on it.
+        let routes = [other_route, route].map(|route| (route, Footprint::PAPER));
         apart
             && crossroads(routes).is_ok_and(|junction| {
                 let conflict = conflict(&junction, 0);
                 let zones = || conflict.into_iter().flat_map(RouteConflict::zones);
-                zones().all(|zone| leaves_room(setup, zone, start, other))
-                    && zones().all(|zone| leaves_room(setup, &zone.swapped(), other, start))
+                zones().all(|zone| leaves_room(setup, zone, other, start))
+                    && zones().all(|zone| leaves_room(setup, &zone.swapped(), start, other))
             })
     })
 }
