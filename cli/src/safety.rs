@@ -6,4 +6,6 @@ mod model;
 mod places;
 
 pub(crate) use defects::{Known, defects};
+#[cfg(test)]
+pub(crate) use model::EvidenceNames;
 pub(crate) use model::{Assumption, Evidence, Hazards, Kind, Requirement, SafetyFile};

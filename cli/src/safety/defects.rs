@@ -98,7 +98,12 @@ impl Finder<'_> {
                 self.add(file, id, problem, "give it a number of two digits or more");
             }
             if !seen.insert(id) {
-                self.add(file, id, "is defined twice", "give one of them another number");
+                self.add(
+                    file,
+                    id,
+                    "is defined twice",
+                    "give one of them another number",
+                );
             }
         }
     }
@@ -109,7 +114,12 @@ impl Finder<'_> {
         for hazard in &file.hazards.hazard {
             self.defined(HAZARDS, &hazard.id, "goals", &hazard.goals);
             if hazard.goals.is_empty() {
-                self.add(HAZARDS, &hazard.id, "has no goal", "name a goal that answers it");
+                self.add(
+                    HAZARDS,
+                    &hazard.id,
+                    "has no goal",
+                    "name a goal that answers it",
+                );
             }
         }
         for goal in &file.hazards.goal {
@@ -134,7 +144,12 @@ impl Finder<'_> {
         self.defined(REQUIREMENTS, id, "goals", &requirement.goals);
         self.defined(REQUIREMENTS, id, "rests_on", &requirement.rests_on);
         if requirement.goals.is_empty() {
-            self.add(REQUIREMENTS, id, "serves no goal", "name a goal of hazards.toml");
+            self.add(
+                REQUIREMENTS,
+                id,
+                "serves no goal",
+                "name a goal of hazards.toml",
+            );
         }
         if requirement.evidence.each().next().is_none() && requirement.open.is_none() {
             let mend = "name what shows it, or say in `open` that nothing does";
@@ -162,7 +177,12 @@ impl Finder<'_> {
         }
         if assumption.monitors.is_empty() && assumption.unseen.is_none() {
             let mend = "name a monitor, or say in `unseen` that nothing tells when it is broken";
-            self.add(ASSUMPTIONS, id, "says nothing of how a breach is seen", mend);
+            self.add(
+                ASSUMPTIONS,
+                id,
+                "says nothing of how a breach is seen",
+                mend,
+            );
         }
         if !assumption.monitors.is_empty() && assumption.tests.is_empty() {
             self.add(ASSUMPTIONS, id, "its monitors have no test", "name one");
@@ -197,22 +217,26 @@ impl Finder<'_> {
             let text = self.tree.text(path).unwrap_or_default();
             text.contains(&format!("pub enum {owner} {{")) && declares(&text, variant)
         });
-        declared.then_some(()).ok_or(format!("the controller has no {name}"))
+        declared
+            .then_some(())
+            .ok_or(format!("the controller has no {name}"))
     }
 
     /// Whether a piece of evidence is there.
     fn evidence(&self, Evidence { kind, name }: Evidence<'_>) -> Result<(), String> {
         let among = |names: &[String]| {
             let there = names.iter().any(|known| known == name);
-            there.then_some(()).ok_or(format!("there is no {kind} of this name"))
+            there
+                .then_some(())
+                .ok_or(format!("there is no {kind} of this name"))
         };
         match kind {
             Kind::Lemma => among(&self.known.lemmas),
             Kind::Margin => among(&self.known.margins),
             Kind::Campaign => among(&self.known.campaign),
             Kind::Beyond => among(&self.known.beyond),
-            // Defined by their own files; whether they are checked is seen in the findings.
-            Kind::Property | Kind::Scenario => Ok(()),
+            Kind::Property => among(&self.file.properties),
+            Kind::Scenario => among(&self.file.scenarios),
             Kind::Theorem => self.theorem(name),
             Kind::Test => self.tree.test(name),
             Kind::Record => self.tree.heading(name),
@@ -227,7 +251,9 @@ impl Finder<'_> {
         let files = self.tree.files("proofs", &[".v"]);
         let mut texts = files.iter().filter_map(|path| self.tree.text(path).ok());
         let declared = texts.any(|text| declares(&text, name));
-        declared.then_some(()).ok_or("no file in proofs/ states it".to_owned())
+        declared
+            .then_some(())
+            .ok_or("no file in proofs/ states it".to_owned())
     }
 
     /// Every condition of theorem and manual is taken up, and nothing else is.
@@ -253,13 +279,22 @@ impl Finder<'_> {
         }
         for condition in stated.difference(&all) {
             let mend = "name it in `sources` of a requirement or an assumption";
-            self.add(ASSUMPTIONS, condition, "nothing takes up this condition", mend);
+            self.add(
+                ASSUMPTIONS,
+                condition,
+                "nothing takes up this condition",
+                mend,
+            );
         }
     }
 
     /// Documents use no identifier that is not defined, and point to what is there.
     fn documents(&mut self) {
-        let known: BTreeSet<String> = self.file.identifiers().map(|(_, _, id)| id.into()).collect();
+        let known: BTreeSet<String> = self
+            .file
+            .identifiers()
+            .map(|(_, _, id)| id.into())
+            .collect();
         let mut files = self.tree.files("docs", &[".md", ".toml"]);
         files.push(README.to_owned());
         for path in files {
@@ -272,7 +307,13 @@ impl Finder<'_> {
                     self.must(&path, "text", "place", place, self.tree.item(place));
                 }
                 for link in links(&text) {
-                    self.must(&path, "text", "link", link, self.tree.heading(&beside(&path, link)));
+                    self.must(
+                        &path,
+                        "text",
+                        "link",
+                        link,
+                        self.tree.heading(&beside(&path, link)),
+                    );
                 }
             }
         }
@@ -294,8 +335,16 @@ const README: &str = "README.md";
 impl SafetyFile {
     /// All identifiers: the file that defines it, its prefix, and itself.
     fn identifiers(&self) -> impl Iterator<Item = (&'static str, &'static str, &str)> {
-        let hazards = self.hazards.hazard.iter().map(|it| (HAZARDS, "H-", it.id.as_str()));
-        let goals = self.hazards.goal.iter().map(|it| (HAZARDS, "SG-", it.id.as_str()));
+        let hazards = self
+            .hazards
+            .hazard
+            .iter()
+            .map(|it| (HAZARDS, "H-", it.id.as_str()));
+        let goals = self
+            .hazards
+            .goal
+            .iter()
+            .map(|it| (HAZARDS, "SG-", it.id.as_str()));
         let requirements = self.requirements.iter();
         let requirements = requirements.map(|it| (REQUIREMENTS, "SR-", it.id.as_str()));
         let assumptions = self.assumptions.iter();
@@ -319,7 +368,11 @@ fn used(text: &str) -> impl Iterator<Item = &str> {
 
 /// The conditions that a document states: rows of tables that begin with A1, C1, P1 or U1.
 fn conditions(text: &str) -> impl Iterator<Item = &str> {
-    let first = |line: &'_ str| line.strip_prefix("| ")?.split_once(" |").map(|it| it.0.len());
+    let first = |line: &'_ str| {
+        line.strip_prefix("| ")?
+            .split_once(" |")
+            .map(|it| it.0.len())
+    };
     text.lines().filter_map(move |line| {
         let name = line.get(2..2 + first(line)?)?;
         let number = name.strip_prefix(['A', 'C', 'P', 'U'])?;
@@ -330,13 +383,19 @@ fn conditions(text: &str) -> impl Iterator<Item = &str> {
 
 /// What stands between backticks.
 fn quoted(text: &str) -> impl Iterator<Item = &str> {
-    text.lines().flat_map(|line| line.split('`').skip(1).step_by(2))
+    text.lines()
+        .flat_map(|line| line.split('`').skip(1).step_by(2))
 }
 
 /// Where the links of a document lead, without those to other hosts.
 fn links(text: &str) -> impl Iterator<Item = &str> {
-    let targets = text.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
-    targets.map(|(target, _)| target).filter(|target| !target.contains("://"))
+    let targets = text
+        .split("](")
+        .skip(1)
+        .filter_map(|rest| rest.split_once(')'));
+    targets
+        .map(|(target, _)| target)
+        .filter(|target| !target.contains("://"))
 }
 
 /// The path of a link in the document at `path`.

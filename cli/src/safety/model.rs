@@ -18,6 +18,9 @@ pub(crate) struct SafetyFile {
     pub(crate) hazards: Hazards,
     pub(crate) requirements: Vec<Requirement>,
     pub(crate) assumptions: Vec<Assumption>,
+    /// The names of the claims of `policy.toml`, and of `reach.toml`.
+    pub(crate) properties: Vec<String>,
+    pub(crate) scenarios: Vec<String>,
 }
 
 /// `hazards.toml`.
@@ -211,6 +214,8 @@ impl SafetyFile {
         let Assumptions { assumption } = read(&folder.join("assumptions.toml"))?;
         let Properties { property } = read(&folder.join("policy.toml"))?;
         let Scenarios { scenario } = read(&folder.join("reach.toml"))?;
+        let properties = property.iter().map(|it| it.id.clone()).collect();
+        let scenarios = scenario.iter().map(|it| it.id.clone()).collect();
         requirement.extend(property.into_iter().map(of_property));
         requirement.extend(scenario.into_iter().map(of_scenario));
         requirement.sort_by(|a, b| a.id.cmp(&b.id));
@@ -218,6 +223,8 @@ impl SafetyFile {
             hazards,
             requirements: requirement,
             assumptions: assumption,
+            properties,
+            scenarios,
         })
     }
 }

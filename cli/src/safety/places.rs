@@ -4,8 +4,21 @@ use std::path::{Path, PathBuf};
 
 /// What declares an item, in Rust and in Rocq.
 const KEYWORDS: [&str; 15] = [
-    "fn", "struct", "enum", "trait", "type", "const", "static", "mod", "impl", "Theorem", "Lemma",
-    "Corollary", "Definition", "Record", "Inductive",
+    "fn",
+    "struct",
+    "enum",
+    "trait",
+    "type",
+    "const",
+    "static",
+    "mod",
+    "impl",
+    "Theorem",
+    "Lemma",
+    "Corollary",
+    "Definition",
+    "Record",
+    "Inductive",
 ];
 
 /// The repository's files.
@@ -74,7 +87,9 @@ impl Tree {
         }
         let text = self.text(path)?;
         let there = text.lines().filter_map(anchor).any(|it| it == heading);
-        there.then_some(()).ok_or(format!("no heading #{heading} in {path}"))
+        there
+            .then_some(())
+            .ok_or(format!("no heading #{heading} in {path}"))
     }
 }
 
@@ -115,7 +130,9 @@ fn attributes<'t>(text: &'t str, name: &str) -> Option<Vec<&'t str>> {
 fn anchor(line: &str) -> Option<String> {
     let heading = line.strip_prefix('#')?.trim_start_matches('#');
     let heading = heading.strip_prefix(' ')?.trim().to_lowercase();
-    let kept = heading.chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
+    let kept = heading
+        .chars()
+        .filter(|c| c.is_alphanumeric() || " -_".contains(*c));
     Some(kept.map(|c| if c == ' ' { '-' } else { c }).collect())
 }
 
@@ -166,7 +183,10 @@ impl<'j, const N: usize> Shield<'j, N> {
 
     #[test]
     fn anchors_are_those_of_markdown() {
-        assert_eq!(anchor("## What is (not) shown, `x_y`").unwrap(), "what-is-not-shown-x_y");
+        assert_eq!(
+            anchor("## What is (not) shown, `x_y`").unwrap(),
+            "what-is-not-shown-x_y"
+        );
         assert_eq!(anchor("#hashtag"), None);
         assert_eq!(anchor("words"), None);
     }

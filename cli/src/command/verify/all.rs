@@ -9,6 +9,8 @@ mod report;
 mod rocq;
 mod safety;
 mod steps;
+#[cfg(test)]
+mod tests;
 
 use crate::failure::Failure;
 use crate::safety::SafetyFile;

@@ -85,7 +85,10 @@ impl Check for Beyond {
         let lines = self.lines();
         let within = shielded(lines.iter().filter(|line| line.row == ROWS[0]));
         let all = shielded(lines.iter());
-        let said = format!("{} collisions within the contract", within.collisions);
+        let said = format!(
+            "{} collisions within the contract, of {} encounters",
+            within.collisions, within.encounters
+        );
         let reported = format!(
             "{} of {} collisions beyond the contract reported before",
             all.flagged - within.flagged,
@@ -95,10 +98,15 @@ impl Check for Beyond {
         Ok(Checked {
             text: table(&lines),
             json: serde_json::json!({ "seed": self.seed, "rows": objects }),
-            summary: format!("{said} of {} encounters; {reported}", within.encounters),
+            summary: format!("{said}; {reported}"),
             findings: vec![
                 Finding::new(Kind::Beyond, WITHIN, within.collisions == 0, &said),
-                Finding::new(Kind::Beyond, REPORTED, all.flagged == all.collisions, reported),
+                Finding::new(
+                    Kind::Beyond,
+                    REPORTED,
+                    all.flagged == all.collisions,
+                    reported,
+                ),
             ],
             open: (within.collisions > 0).then_some(said),
         })
@@ -112,22 +120,22 @@ fn shielded<'l>(lines: impl Iterator<Item = &'l Line>) -> Count {
 }
 
 fn table(lines: &[Line]) -> String {
-        let n = lines.first().map_or(0, |line| line.counts[2].encounters);
-        let mut text = vec![
-            format!("{n} encounters a cell; collisions in %, and their speed in m/s"),
-            format!(
-                "{:<33} {:<8} {:>12} {:>12} {:>12} {:>8} {:>8}",
-                "beyond the contract",
-                "others",
-                "no guard",
-                "plain rule",
-                "shield",
-                "flagged",
-                "noticed"
-            ),
-        ];
-        text.extend(lines.iter().map(Line::text));
-        text.join("\n")
+    let n = lines.first().map_or(0, |line| line.counts[2].encounters);
+    let mut text = vec![
+        format!("{n} encounters a cell; collisions in %, and their speed in m/s"),
+        format!(
+            "{:<33} {:<8} {:>12} {:>12} {:>12} {:>8} {:>8}",
+            "beyond the contract",
+            "others",
+            "no guard",
+            "plain rule",
+            "shield",
+            "flagged",
+            "noticed"
+        ),
+    ];
+    text.extend(lines.iter().map(Line::text));
+    text.join("\n")
 }
 
 impl Line {

@@ -84,7 +84,10 @@ impl Check for Reach {
                 rows.len()
             ),
             findings: rows.iter().map(finding).collect(),
-            open: open("not proved", unproved.map(|(scenario, _)| scenario.id.as_str())),
+            open: open(
+                "not proved",
+                unproved.map(|(scenario, _)| scenario.id.as_str()),
+            ),
         })
     }
 }

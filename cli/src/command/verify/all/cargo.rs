@@ -39,7 +39,8 @@ pub(super) fn run(file: &SafetyFile, root: &Path) -> Step {
             }
         };
         let ran = child::run(cargo, progress);
-        let (_, said) = ran.map_err(|error| Failure::Input(miette!("cannot run cargo: {error}")))?;
+        let (_, said) =
+            ran.map_err(|error| Failure::Input(miette!("cannot run cargo: {error}")))?;
         check(file, root, &said)
     })
 }
@@ -63,7 +64,11 @@ pub(super) fn collected(
 /// The tests that nobody has run.
 pub(super) fn left_out() -> Step {
     let why = "--quick runs no test: give what `cargo test --workspace` printed with --tests FILE";
-    Step::missing(NAME, format!("cargo {}", ARGUMENTS.join(" ")), why.to_owned())
+    Step::missing(
+        NAME,
+        format!("cargo {}", ARGUMENTS.join(" ")),
+        why.to_owned(),
+    )
 }
 
 /// Finds in `said` the tests that `file` names.
@@ -119,13 +124,22 @@ impl Results {
         let mut skipped = BTreeMap::new();
         for line in said.lines().map(plain) {
             let line = line.trim();
-            if let Some((_, path)) = line.strip_prefix("Running ").and_then(|it| it.split_once(" (")) {
+            if let Some((_, path)) = line
+                .strip_prefix("Running ")
+                .and_then(|it| it.split_once(" ("))
+            {
                 program = stem(path.trim_end_matches(')'));
             } else if line.starts_with("Doc-tests ") {
                 program.clear();
-            } else if let Some((test, why)) = line.strip_prefix("skipped: ").and_then(|it| it.split_once(": ")) {
+            } else if let Some((test, why)) = line
+                .strip_prefix("skipped: ")
+                .and_then(|it| it.split_once(": "))
+            {
                 skipped.insert(function(test), why.to_owned());
-            } else if let Some((test, became)) = line.strip_prefix("test ").and_then(|it| it.rsplit_once(" ... ")) {
+            } else if let Some((test, became)) = line
+                .strip_prefix("test ")
+                .and_then(|it| it.rsplit_once(" ... "))
+            {
                 let name = function(test.trim_end_matches(" - should panic"));
                 let ran = match (became, skipped.remove(&name)) {
                     ("ok", None) => Ran::Passed,
@@ -133,7 +147,11 @@ impl Results {
                     (became, _) if became.starts_with("ignored") => Ran::Skipped(became.to_owned()),
                     _ => Ran::Failed,
                 };
-                results.0.entry((program.clone(), name)).or_default().push(ran);
+                results
+                    .0
+                    .entry((program.clone(), name))
+                    .or_default()
+                    .push(ran);
             }
         }
         results
@@ -151,7 +169,9 @@ impl Results {
 
     fn failed(&self) -> Vec<String> {
         let failed = self.0.iter().filter(|(_, ran)| ran.contains(&Ran::Failed));
-        failed.map(|((program, name), _)| format!("{program}: {name}")).collect()
+        failed
+            .map(|((program, name), _)| format!("{program}: {name}"))
+            .collect()
     }
 }
 
@@ -160,7 +180,10 @@ fn program(root: &Path, path: &str) -> Option<String> {
     let parts: Vec<&str> = path.split('/').collect();
     let package = |place: &usize| {
         ["src", "tests"].contains(&parts[*place])
-            && root.join(parts[..*place].join("/")).join("Cargo.toml").is_file()
+            && root
+                .join(parts[..*place].join("/"))
+                .join("Cargo.toml")
+                .is_file()
     };
     let place = (0..parts.len()).rev().find(package)?;
     if parts[place] == "tests" {
@@ -175,7 +198,9 @@ fn program(root: &Path, path: &str) -> Option<String> {
 /// `target/debug/deps/zones-0a1b` is `zones`.
 fn stem(path: &str) -> String {
     let file = path.rsplit(['/', '\\']).next().unwrap_or(path);
-    file.rsplit_once('-').map_or(file, |(stem, _)| stem).to_owned()
+    file.rsplit_once('-')
+        .map_or(file, |(stem, _)| stem)
+        .to_owned()
 }
 
 /// The last part of a test's name.
@@ -213,10 +238,16 @@ test controller/src/lib.rs - (line 10) ... ok
     fn what_cargo_prints_is_read_by_program_and_function() {
         let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
         let results = Results::read(SAID);
-        let of = |place| results.of(root, place);
-        assert_eq!(of("controller/src/shield/tests.rs::it_holds"), Some(Ran::Passed));
+        let of = |place: &str| results.of(root, place);
+        assert_eq!(
+            of("controller/src/shield/tests.rs::it_holds"),
+            Some(Ran::Passed)
+        );
         assert_eq!(of("sim/tests/zones.rs::it_holds"), Some(Ran::Passed));
-        assert_eq!(of("controller/src/shield/tests.rs::it_breaks"), Some(Ran::Failed));
+        assert_eq!(
+            of("controller/src/shield/tests.rs::it_breaks"),
+            Some(Ran::Failed)
+        );
         assert_eq!(of("sim/tests/shield.rs::it_holds"), None);
         assert_eq!(of("sim/tests/zones.rs::it_breaks"), None);
         for skipped in ["without_data", "it_is_long"] {

@@ -98,7 +98,9 @@ pub(super) struct JudgedAssumption {
 impl JudgedRequirement {
     /// Whether something that should show it does not.
     pub(super) fn failed(&self) -> bool {
-        self.evidence.iter().any(|item| item.state == State::NotShown)
+        self.evidence
+            .iter()
+            .any(|item| item.state == State::NotShown)
     }
 }
 
@@ -108,14 +110,18 @@ pub(super) struct Findings<'s>(Vec<&'s Finding>);
 impl<'s> Findings<'s> {
     pub(super) fn of(steps: &'s [Step]) -> Self {
         // What was not done has found nothing.
-        let done = steps.iter().filter(|step| {
-            matches!(step.outcome, Outcome::Passed | Outcome::Failed(_))
-        });
+        let done = steps
+            .iter()
+            .filter(|step| matches!(step.outcome, Outcome::Passed | Outcome::Failed(_)));
         Self(done.flat_map(|step| &step.findings).collect())
     }
 
     pub(super) fn requirement(&self, requirement: &Requirement) -> JudgedRequirement {
-        let evidence: Vec<Item> = requirement.evidence.each().map(|it| self.item(it)).collect();
+        let evidence: Vec<Item> = requirement
+            .evidence
+            .each()
+            .map(|it| self.item(it))
+            .collect();
         JudgedRequirement {
             id: requirement.id.clone(),
             says: requirement.says.clone(),
@@ -151,7 +157,9 @@ impl<'s> Findings<'s> {
 
     fn item(&self, Evidence { kind, name }: Evidence<'_>) -> Item {
         let all = self.0.iter();
-        let about: Vec<&&Finding> = all.filter(|it| it.kind == kind && it.name == name).collect();
+        let about: Vec<&&Finding> = all
+            .filter(|it| it.kind == kind && it.name == name)
+            .collect();
         let said: Vec<&str> = about.iter().map(|finding| finding.said.as_str()).collect();
         let state = match () {
             () if kind == Kind::Record => State::Elsewhere,
@@ -173,9 +181,10 @@ fn status(evidence: &[Item]) -> Status {
     if evidence.is_empty() || evidence.iter().any(|item| item.state == State::NotShown) {
         return Status::Open;
     }
-    let counted = evidence.iter().filter(|item| item.state != State::Elsewhere);
-    let (proofs, tests): (Vec<&Item>, Vec<&Item>) =
-        counted.partition(|item| item.kind.is_proof());
+    let counted = evidence
+        .iter()
+        .filter(|item| item.state != State::Elsewhere);
+    let (proofs, tests): (Vec<&Item>, Vec<&Item>) = counted.partition(|item| item.kind.is_proof());
     let (decisive, status) = match proofs.is_empty() {
         true => (tests, Status::Tested),
         false => (proofs, Status::Proved),
@@ -207,11 +216,17 @@ mod tests {
             (&[(Lemma, Shown), (Test, NotDone)], Status::Proved),
             (&[(Lemma, Shown), (Theorem, NotDone)], Status::Skipped),
             (&[(Lemma, Shown), (Test, NotShown)], Status::Open),
-            (&[(Campaign, Shown), (Test, Shown), (Record, Elsewhere)], Status::Tested),
+            (
+                &[(Campaign, Shown), (Test, Shown), (Record, Elsewhere)],
+                Status::Tested,
+            ),
             (&[(Campaign, Shown), (Test, NotDone)], Status::Skipped),
             (&[(Record, Elsewhere)], Status::Skipped),
         ] {
-            let evidence: Vec<Item> = evidence.iter().map(|(kind, state)| item(*kind, *state)).collect();
+            let evidence: Vec<Item> = evidence
+                .iter()
+                .map(|(kind, state)| item(*kind, *state))
+                .collect();
             assert_eq!(status(&evidence), expected, "{evidence:?}");
         }
     }

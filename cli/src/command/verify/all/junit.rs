@@ -23,7 +23,11 @@ struct Case {
 /// The report as XML.
 pub(super) fn write(report: &Report) -> String {
     let checks = report.steps.iter().map(Case::of_step).collect();
-    let requirements = report.requirements.iter().map(Case::of_requirement).collect();
+    let requirements = report
+        .requirements
+        .iter()
+        .map(Case::of_requirement)
+        .collect();
     let assumptions = report.assumptions.iter().map(Case::of_assumption).collect();
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"cede verify all\">\n{}{}{}</testsuites>\n",
@@ -43,7 +47,9 @@ impl Case {
                 Outcome::Passed => Verdict::Passed,
                 Outcome::Failed(why) => Verdict::Failed(why.clone()),
                 Outcome::Missing(why) => Verdict::Failed(format!("not done: {why}")),
-                Outcome::Elsewhere => Verdict::Skipped(format!("by its own command; {}", step.summary)),
+                Outcome::Elsewhere => {
+                    Verdict::Skipped(format!("by its own command; {}", step.summary))
+                }
             },
         }
     }
@@ -86,8 +92,14 @@ impl Case {
 }
 
 fn suite(name: &str, cases: Vec<Case>) -> String {
-    let failures = cases.iter().filter(|case| matches!(case.verdict, Verdict::Failed(_))).count();
-    let skipped = cases.iter().filter(|case| matches!(case.verdict, Verdict::Skipped(_))).count();
+    let failures = cases
+        .iter()
+        .filter(|case| matches!(case.verdict, Verdict::Failed(_)))
+        .count();
+    let skipped = cases
+        .iter()
+        .filter(|case| matches!(case.verdict, Verdict::Skipped(_)))
+        .count();
     let time: f64 = cases.iter().map(|case| case.seconds).sum();
     let (tests, body) = (cases.len(), cases.iter().map(Case::xml).collect::<String>());
     format!(

@@ -28,14 +28,6 @@ pub(super) fn write(report: &Report) -> String {
 }
 
 fn head(report: &Report) -> String {
-    let verdict = match report.open() {
-        None => "Every check that was to be run has passed.".to_owned(),
-        Some(open) => {
-            let lines = open.lines().map(|line| format!("<li>{}</li>\n", escaped(line)));
-            let lines: String = lines.collect();
-            format!("Not everything is shown:</p>\n<ul class=\"missing\">\n{lines}</ul>\n<p>")
-        }
-    };
     let tile = |status: Status| {
         let (count, word) = (report.count(status), status.word());
         format!("<li><b>{count}</b> <span class=\"{word}\">{word}</span></li>\n")
@@ -46,14 +38,31 @@ fn head(report: &Report) -> String {
         false => "",
     };
     format!(
-        "<p class=\"verdict\">{verdict}</p>\n<ul class=\"tiles\">\n{tiles}</ul>\n\
-         <p class=\"lead\"><b>Proved</b>: for all inputs of a stated set. <b>Tested</b>: on samples. <b>Assumed</b>: for the integrator to keep.\
-         <b> Skipped</b>: not shown in this run. <b>Open</b>: not shown.{quick} {NO_CLAIM}</p>\n"
+        "{}<ul class=\"tiles\">\n{tiles}</ul>\n\
+         <p class=\"lead\"><b>Proved</b>: for all inputs of a stated set. <b>Tested</b>: on samples. <b>Assumed</b>: for the integrator to keep. \
+         <b>Skipped</b>: not shown in this run. <b>Open</b>: not shown.{quick} {NO_CLAIM}</p>\n",
+        verdict(report)
+    )
+}
+
+fn verdict(report: &Report) -> String {
+    let Some(open) = report.open() else {
+        return "<p class=\"verdict\">Every check that was to be run has passed.</p>\n".to_owned();
+    };
+    let lines = open
+        .lines()
+        .map(|line| format!("<li>{}</li>\n", escaped(line)));
+    format!(
+        "<p class=\"verdict\">Not everything is shown:</p>\n<ul class=\"missing\">\n{}</ul>\n",
+        lines.collect::<String>()
     )
 }
 
 fn section(title: &str, lead: &str, columns: &[&str], rows: &str) -> String {
-    let columns: String = columns.iter().map(|name| format!("<th>{name}</th>")).collect();
+    let columns: String = columns
+        .iter()
+        .map(|name| format!("<th>{name}</th>"))
+        .collect();
     format!(
         "<section>\n<h2>{title}</h2>\n<p class=\"lead\">{lead}</p>\n<table>\n<thead><tr>{columns}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table>\n</section>\n"
     )
@@ -67,7 +76,7 @@ fn requirements(report: &Report) -> String {
     let rows: String = report.requirements.iter().map(requirement).collect();
     section(
         "Requirements",
-        "What the item does. Status: where proofs are named, they decide; otherwise tests do. What only a command of its own shows does not count.",
+        "What the item does. Status: where proofs are named, they decide; otherwise tests do. ✓ shown, ✗ not shown, ○ not done, → by a command of its own, which does not count.",
         &["", "status", "requirement, and what is open", "evidence"],
         &rows,
     )
@@ -117,9 +126,10 @@ fn assumption(it: &JudgedAssumption) -> String {
         true => String::new(),
         false => format!("<p class=\"small\">from {}</p>", linked(&it.sources)),
     };
-    let unseen = it.unseen.as_ref().map(|unseen| {
-        format!("<p class=\"small open\">not seen: {}</p>", escaped(unseen))
-    });
+    let unseen = it
+        .unseen
+        .as_ref()
+        .map(|unseen| format!("<p class=\"small open\">not seen: {}</p>", escaped(unseen)));
     format!(
         "<tr id=\"{id}\"><td>{id}</td><td>{}{sources}</td><td>{}</td><td>{}{}{}</td></tr>\n",
         escaped(&it.says),
@@ -130,35 +140,53 @@ fn assumption(it: &JudgedAssumption) -> String {
     )
 }
 
-/// Evidence by its kind: names alone where there are many, with their numbers where a check has some.
+/// Evidence by its kind, and tests by their file: names alone where there are many, with numbers where a check has some.
 fn evidence(items: &[Item]) -> String {
-    let groups = items.chunk_by(|a, b| a.kind == b.kind);
-    groups.map(|group| group_of(group[0].kind, group)).collect()
+    let same = |a: &Item, b: &Item| (a.kind, file(a)) == (b.kind, file(b));
+    let groups = items.chunk_by(same);
+    groups.map(|group| group_of(&group[0], group)).collect()
 }
 
-fn group_of(kind: Kind, items: &[Item]) -> String {
+/// The file of a test; none of other evidence.
+fn file(item: &Item) -> Option<&str> {
+    let (path, _) = item.name.split_once("::")?;
+    Some(path)
+}
+
+fn group_of(first: &Item, items: &[Item]) -> String {
+    let path = file(first);
+    let title = match path {
+        Some(path) => format!("{} <code>{}</code>", first.kind, escaped(path)),
+        None => first.kind.to_string(),
+    };
     let numbers = matches!(
-        kind,
+        first.kind,
         Kind::Margin | Kind::Property | Kind::Scenario | Kind::Campaign | Kind::Beyond
     );
     let one = |item: &Item| {
-        let (class, mark) = match item.state {
-            State::Shown => ("shown", "✓"),
-            State::NotShown => ("not-shown", "✗"),
-            State::NotDone => ("not-done", "not done"),
-            State::Elsewhere => ("elsewhere", "→"),
-        };
+        let name = path.map_or(item.name.as_str(), |path| &item.name[path.len() + 2..]);
+        let (class, mark) = mark(item.state);
         let said = match numbers && !item.said.is_empty() {
             true => format!(" ({})", escaped(&item.said)),
             false => String::new(),
         };
         format!(
-            "<span class=\"{class}\">{mark}</span> <code>{}</code>{said}",
-            escaped(&item.name)
+            "<span class=\"{class}\">{mark}</span>&nbsp;<code>{}</code>{said}",
+            escaped(name)
         )
     };
     let all: Vec<String> = items.iter().map(one).collect();
-    format!("<p class=\"small\">{kind}: {}</p>", all.join(", "))
+    format!("<p class=\"small\">{title}: {}</p>", all.join(", "))
+}
+
+/// A class of the style, and a sign that is read without colours.
+const fn mark(state: State) -> (&'static str, &'static str) {
+    match state {
+        State::Shown => ("shown", "✓"),
+        State::NotShown => ("not-shown", "✗"),
+        State::NotDone => ("not-done", "○"),
+        State::Elsewhere => ("elsewhere", "→"),
+    }
 }
 
 fn linked(ids: &[String]) -> String {
@@ -186,7 +214,10 @@ fn hazards(report: &Report) -> String {
     }
     for goal in &report.hazards.goal {
         let (id, says) = (&goal.id, escaped(&goal.says));
-        let serve = report.requirements.iter().filter(|it| it.goals.contains(id));
+        let serve = report
+            .requirements
+            .iter()
+            .filter(|it| it.goals.contains(id));
         let serve: Vec<String> = serve.map(|it| it.id.clone()).collect();
         let _ = writeln!(
             rows,
@@ -215,7 +246,10 @@ fn checks(report: &Report) -> String {
 fn check(step: &Step) -> String {
     let word = step.outcome.word().text();
     let why = step.outcome.why().map(|why| {
-        format!("<p class=\"small open\">{}</p>", escaped(why).replace("&#10;", "<br>"))
+        format!(
+            "<p class=\"small open\">{}</p>",
+            escaped(why).replace("&#10;", "<br>")
+        )
     });
     let seconds = match step.outcome {
         Outcome::Elsewhere | Outcome::Missing(_) => String::new(),

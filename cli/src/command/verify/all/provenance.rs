@@ -56,7 +56,11 @@ pub(super) fn of(root: &Path, steps: &[Step]) -> Provenance {
 /// The commit, and whether files differ from it.
 fn revision(root: &Path) -> Option<String> {
     let git = |arguments: &[&str]| {
-        let output = Command::new("git").arg("-C").arg(root).args(arguments).output();
+        let output = Command::new("git")
+            .arg("-C")
+            .arg(root)
+            .args(arguments)
+            .output();
         let output = output.ok().filter(|output| output.status.success())?;
         Some(String::from_utf8_lossy(&output.stdout).trim().to_owned())
     };
@@ -81,7 +85,10 @@ fn tools(steps: &[Step]) -> Vec<Named> {
 }
 
 fn hashes(root: &Path) -> Vec<Named> {
-    let weights: Vec<u8> = embedded::words().iter().flat_map(|word| word.to_le_bytes()).collect();
+    let weights: Vec<u8> = embedded::words()
+        .iter()
+        .flat_map(|word| word.to_le_bytes())
+        .collect();
     let policy = Named {
         name: "the embedded policy's weights".to_owned(),
         value: hash(&weights),
@@ -93,7 +100,10 @@ fn hashes(root: &Path) -> Vec<Named> {
             value: hash(&bytes),
         })
     };
-    [policy].into_iter().chain(FILES.iter().filter_map(file)).collect()
+    [policy]
+        .into_iter()
+        .chain(FILES.iter().filter_map(file))
+        .collect()
 }
 
 fn hash(bytes: &[u8]) -> String {

@@ -7,8 +7,7 @@ use crate::safety::{Hazards, SafetyFile};
 use serde::Serialize;
 
 /// What is said on every form of the report.
-pub(super) const NO_CLAIM: &str =
-    "No compliance with ISO 26262, ISO 21448 or UL 4600 is claimed.";
+pub(super) const NO_CLAIM: &str = "No compliance with ISO 26262, ISO 21448 or UL 4600 is claimed.";
 
 /// What was done, and where everything stands.
 #[derive(Clone, Debug)]
@@ -94,10 +93,15 @@ impl Report {
             let word = step.outcome.word().text();
             let said = step.outcome.why().unwrap_or(&step.summary);
             let first = said.lines().next().unwrap_or_default();
-            format!("{:<40} {word:<9} {:>5.0} s  {first}", step.name, step.seconds)
+            format!(
+                "{:<40} {word:<9} {:>5.0} s  {first}",
+                step.name, step.seconds
+            )
         };
-        let requirement = |it: &JudgedRequirement| format!("{:<7} {:<8} {}", it.id, it.status.word(), it.says);
-        let assumption = |it: &JudgedAssumption| format!("{:<7} {:<8} {}", it.id, it.status.word(), it.says);
+        let requirement =
+            |it: &JudgedRequirement| format!("{:<7} {:<8} {}", it.id, it.status.word(), it.says);
+        let assumption =
+            |it: &JudgedAssumption| format!("{:<7} {:<8} {}", it.id, it.status.word(), it.says);
         let steps = self.steps.iter().map(step);
         let requirements = self.requirements.iter().map(requirement);
         let assumptions = self.assumptions.iter().map(assumption);
@@ -107,7 +111,8 @@ impl Report {
 
     pub(super) fn json(&self) -> String {
         let steps: Vec<_> = self.steps.iter().map(StepObject::of).collect();
-        let counts = Status::ALL.map(|status| (status.word().to_owned(), self.count(status).into()));
+        let counts =
+            Status::ALL.map(|status| (status.word().to_owned(), self.count(status).into()));
         serde_json::json!({
             "passed": self.open().is_none(), "quick": self.quick, "provenance": self.provenance,
             "counts": serde_json::Map::from_iter(counts), "checks": steps,

@@ -126,6 +126,12 @@ pub(super) struct Plan {
 }
 
 impl Plan {
+    /// Its words after `cede verify`.
+    #[cfg(test)]
+    pub(super) const fn line(&self) -> &'static str {
+        self.line
+    }
+
     /// Runs the command.
     pub(super) fn run(&self) -> Step {
         let command = format!("cede verify {}", self.line);
@@ -214,7 +220,11 @@ const ELSEWHERE: [(&str, &str, &str); 9] = [
         "firmware/capi/check.sh",
         "docs/integration.md#integrity",
     ),
-    ("readers under fuzz", "fuzz/run.sh", "CONTRIBUTING.md#fuzzing"),
+    (
+        "readers under fuzz",
+        "fuzz/run.sh",
+        "CONTRIBUTING.md#fuzzing",
+    ),
     (
         "public verification instances",
         "cargo bench -p cede-nnv --bench conformance -- FOLDER",
