@@ -1,4 +1,4 @@
-//! `cede verify`: proofs, and the check of proofs.
+//! `cede verify`: proofs, the check of proofs, and all evidence in one report.
 
 mod all;
 mod beyond;
@@ -15,7 +15,7 @@ mod shield;
 use crate::failure::Failure;
 use clap::Subcommand;
 
-/// Proves or refutes properties, and checks proofs.
+/// Proves or refutes properties, checks proofs, and collects all evidence.
 #[derive(Subcommand)]
 pub(crate) enum Verify {
     /// All checks in one report: what is proved, tested, assumed, skipped and open?

@@ -12,6 +12,8 @@ pub(crate) struct Known {
     pub(crate) margins: Vec<String>,
     pub(crate) campaign: Vec<String>,
     pub(crate) beyond: Vec<String>,
+    /// Headings under which it says that results are.
+    pub(crate) records: Vec<String>,
     /// Files that the program carries or prints, as it has them.
     pub(crate) carried: Vec<(&'static str, String)>,
 }
@@ -319,8 +321,17 @@ impl Finder<'_> {
         }
     }
 
-    /// The program was built from this tree.
+    /// The program was built from this tree, and points to what is there.
     fn carried(&mut self) {
+        for record in &self.known.records {
+            self.must(
+                README,
+                "verify all",
+                "record",
+                record,
+                self.tree.heading(record),
+            );
+        }
         for (path, carried) in &self.known.carried {
             if self.tree.text(path).as_deref() != Ok(carried) {
                 let problem = "differs from what the program has";

@@ -41,7 +41,7 @@ pub(crate) struct All {
     /// Write report.html, report.json and junit.xml to this folder.
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
-    /// Shorter campaigns; no test is run. Minutes.
+    /// Shorter campaigns, coarser bounds on rounding; no test is run. Minutes.
     #[arg(long)]
     quick: bool,
     /// What `cargo test` printed, both streams; may be given several times. No test is run then.

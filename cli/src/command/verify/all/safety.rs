@@ -4,7 +4,7 @@ use super::super::beyond::{REPORTED, WITHIN};
 use super::super::campaign;
 use super::super::checked::Checked;
 use super::super::{policy, reach};
-use super::steps::Step;
+use super::steps::{Step, records};
 use crate::safety::{Known, SafetyFile, defects};
 use cede_sim::campaign::Setup;
 use cede_verify::lemma::{lemmas, shipped};
@@ -45,6 +45,7 @@ pub(super) fn known() -> Known {
         margins: Predicate::ALL.map(|it| owned(it.name())).to_vec(),
         campaign: setups.map(owned).collect(),
         beyond: [WITHIN, REPORTED].map(owned).to_vec(),
+        records: records(),
         carried: vec![
             ("docs/safety/policy.toml", owned(policy::PROPERTIES)),
             ("docs/safety/reach.toml", owned(reach::SCENARIOS)),

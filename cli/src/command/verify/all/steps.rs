@@ -161,7 +161,11 @@ pub(super) fn plans(quick: bool) -> [Plan; 7] {
         plan("lemmas", same("lemmas"), check::<Lemmas>),
         plan("policy", same("policy --check"), check::<Policy>),
         plan("closed loop", same("reach"), check::<Reach>),
-        plan("rounding", same("margins"), check::<Margins>),
+        plan(
+            "rounding",
+            ["margins", "margins --boxes 400000"],
+            check::<Margins>,
+        ),
         plan(
             "campaign",
             ["campaign --steps 10000000", "campaign --steps 1000000"],
@@ -228,9 +232,14 @@ const ELSEWHERE: [(&str, &str, &str); 9] = [
     (
         "public verification instances",
         "cargo bench -p cede-nnv --bench conformance -- FOLDER",
-        "docs/benchmarks.md",
+        "docs/benchmarks.md#network-verifier",
     ),
 ];
+
+/// Where the results of these are.
+pub(super) fn records() -> Vec<String> {
+    ELSEWHERE.map(|(_, _, record)| record.to_owned()).to_vec()
+}
 
 /// Checks that have a command of their own.
 pub(super) fn elsewhere() -> impl Iterator<Item = Step> {
