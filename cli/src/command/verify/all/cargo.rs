@@ -88,7 +88,7 @@ fn check(file: &SafetyFile, root: &Path, said: &str) -> Result<Checked, Failure>
     let open = match (failed.is_empty(), absent.is_empty()) {
         (true, true) => None,
         (false, _) => Some(format!("failed: {}", failed.join(", "))),
-        (true, false) => Some(absent.join("; ")),
+        (true, false) => Some(some(&absent)),
     };
     let passed = findings.iter().filter(|finding| finding.shown).count();
     Ok(Checked {
@@ -103,6 +103,16 @@ fn check(file: &SafetyFile, root: &Path, said: &str) -> Result<Checked, Failure>
         findings,
         open,
     })
+}
+
+/// The first few of `lines`, and how many more there are.
+fn some(lines: &[String]) -> String {
+    const FEW: usize = 3;
+    let first = lines[..FEW.min(lines.len())].join("; ");
+    match lines.len().saturating_sub(FEW) {
+        0 => first,
+        more => format!("{first}; and {more} more"),
+    }
 }
 
 /// The tests that the safety file names, path::function.
