@@ -22,18 +22,16 @@ struct Case {
 
 /// The report as XML.
 pub(super) fn write(report: &Report) -> String {
-    let checks = report.steps.iter().map(Case::of_step).collect();
-    let requirements = report
-        .requirements
-        .iter()
-        .map(Case::of_requirement)
-        .collect();
-    let assumptions = report.assumptions.iter().map(Case::of_assumption).collect();
+    let checks: Vec<Case> = report.steps.iter().map(Case::of_step).collect();
+    let requirements = report.requirements.iter();
+    let requirements: Vec<Case> = requirements.map(Case::of_requirement).collect();
+    let assumptions = report.assumptions.iter();
+    let assumptions: Vec<Case> = assumptions.map(Case::of_assumption).collect();
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"cede verify all\">\n{}{}{}</testsuites>\n",
-        suite("checks", checks),
-        suite("requirements", requirements),
-        suite("assumptions of use", assumptions),
+        suite("checks", &checks),
+        suite("requirements", &requirements),
+        suite("assumptions of use", &assumptions),
     )
 }
 
@@ -91,7 +89,7 @@ impl Case {
     }
 }
 
-fn suite(name: &str, cases: Vec<Case>) -> String {
+fn suite(name: &str, cases: &[Case]) -> String {
     let failures = cases
         .iter()
         .filter(|case| matches!(case.verdict, Verdict::Failed(_)))
