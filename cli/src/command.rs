@@ -37,7 +37,7 @@ pub(crate) enum Command {
     Export(export::Args),
     /// Convert an ONNX policy that was trained elsewhere to a weights file
     Import(import::Args),
-    /// Prove properties of networks, and check proofs
+    /// Prove properties, check proofs, and collect all evidence
     #[command(subcommand)]
     Verify(verify::Verify),
 }

@@ -27,6 +27,18 @@ impl Failure {
         Self::Usage(format!("{option} has no effect with {other}: leave it out"))
     }
 
+    /// What failed, in a line, with the mend.
+    pub(crate) fn words(&self) -> String {
+        match self {
+            Self::Usage(what) | Self::Check(what) => what.clone(),
+            Self::Input(report) => {
+                let mend = report.help().map(|mend| format!("; {mend}"));
+                format!("{report}{}", mend.unwrap_or_default())
+            }
+            Self::Interrupted => "interrupted".to_owned(),
+        }
+    }
+
     /// Reports the failure on stderr and returns the exit code.
     pub(crate) fn report(self) -> ExitCode {
         match self {

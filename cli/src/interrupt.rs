@@ -1,5 +1,6 @@
 //! Ctrl-C and SIGTERM: exit code 4 within a second, after saving if the command saves its work.
 
+use crate::child;
 use crate::failure::Failure;
 use cede_data::output;
 use cede_verify::lemma;
@@ -32,7 +33,7 @@ pub(crate) fn install() {
     });
 }
 
-/// Ends the program. Removes temporary files and stops solvers.
+/// Ends the program. Removes temporary files and stops solvers and other programs.
 fn end() {
     let (said, waits) = mpsc::channel();
     // Another thread may hold the lock on stderr while it writes a message that nobody reads.
@@ -42,6 +43,7 @@ fn end() {
     });
     let _ = waits.recv_timeout(PATIENCE);
     lemma::abandon();
+    child::abandon();
     output::abandon();
     process::exit(4);
 }

@@ -3,6 +3,7 @@
 #[macro_use]
 mod stdout;
 
+mod child;
 mod command;
 mod contract;
 mod drivers;
@@ -12,6 +13,7 @@ mod judge;
 mod left_out;
 mod plural;
 mod report;
+mod safety;
 mod scene;
 mod settings;
 mod source;

@@ -186,7 +186,7 @@ fn help_says_which_graphs_are_understood_and_what_exit_codes_mean() {
         assert!(help.contains(word), "{word}: {help}");
     }
     for command in [
-        "policy", "reach", "margins", "lemmas", "check", "shield", "campaign",
+        "all", "policy", "reach", "margins", "lemmas", "check", "shield", "campaign",
     ] {
         let help = stdout(&cede(&format!("help verify {command}")).success());
         assert!(help.contains("Exit code"), "{command}: {help}");
@@ -283,6 +283,12 @@ fn a_signal_ends_every_command_within_a_second_and_leaves_nothing_half_written()
         "verify margins --boxes 1000000000".to_owned(),
         "verify policy --sweep --check --timeout 600".to_owned(),
         "verify reach --timeout 600".to_owned(),
+        concat!(
+            "verify all --quick --source ",
+            env!("CARGO_MANIFEST_DIR"),
+            "/.."
+        )
+        .to_owned(),
         format!("verify shield {recorded} --sweep sweep.csv"),
     ] {
         for signal in ["-TERM", "-INT"] {

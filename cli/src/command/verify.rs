@@ -1,8 +1,10 @@
-//! `cede verify`: proofs, and the check of proofs.
+//! `cede verify`: proofs, the check of proofs, and all evidence in one report.
 
+mod all;
 mod beyond;
 mod campaign;
 mod check;
+mod checked;
 mod lemmas;
 mod margins;
 mod network;
@@ -13,9 +15,11 @@ mod shield;
 use crate::failure::Failure;
 use clap::Subcommand;
 
-/// Proves or refutes properties, and checks proofs.
+/// Proves or refutes properties, checks proofs, and collects all evidence.
 #[derive(Subcommand)]
 pub(crate) enum Verify {
+    /// All checks in one report: what is proved, tested, assumed, skipped and open?
+    All(all::All),
     /// Does an input of the property's box give an unsafe output of the network?
     Network(network::Network),
     /// Does the policy have its claimed properties?
@@ -40,6 +44,7 @@ impl Verify {
     /// Runs the command.
     pub(crate) fn run(self) -> Result<(), Failure> {
         match self {
+            Self::All(all) => all.run(),
             Self::Network(network) => network.run(),
             Self::Policy(policy) => policy.run(),
             Self::Reach(reach) => reach.run(),

@@ -1,11 +1,12 @@
 //! `cede verify beyond`: encounters in which one number of the contract does not hold.
 
+use super::checked::{Check, Checked, Finding};
 use crate::contract::Named;
 use crate::failure::Failure;
+use crate::safety::Kind;
 use crate::threads::Threads;
 use cede_sim::campaign::beyond::{Count, Guard, ROWS, Row, Temper, beyond};
 use clap::Args;
-use std::io::Write as _;
 
 /// The text below the options in `cede help verify beyond`.
 const HELP: &str = "\
@@ -37,6 +38,12 @@ pub(crate) struct Beyond {
     json: bool,
 }
 
+/// No collision behind the shield within the contract.
+pub(super) const WITHIN: &str = "within the contract";
+
+/// Every collision behind the shield is reported before.
+pub(super) const REPORTED: &str = "reported before a collision";
+
 /// A row of the table for one temper of the others.
 struct Line {
     row: Row,
@@ -49,6 +56,10 @@ impl Beyond {
     /// Runs the command.
     pub(crate) fn run(self) -> Result<(), Failure> {
         self.threads.start()?;
+        self.check()?.tell(self.json)
+    }
+
+    fn lines(&self) -> Vec<Line> {
         let contract = self.contract.unwrap_or_default().0;
         let mut lines = Vec::new();
         for row in ROWS {
@@ -65,43 +76,66 @@ impl Beyond {
                 });
             }
         }
-        // A closed pipe (`| head`) is not an error.
-        let _ = writeln!(std::io::stdout(), "{}", self.told(&lines));
-        let within: u64 = lines
-            .iter()
-            .filter(|line| line.row == ROWS[0])
-            .map(|line| line.counts[2].collisions)
-            .sum();
-        match within {
-            0 => Ok(()),
-            _ => Err(Failure::Check(format!(
-                "{within} collisions within the contract"
-            ))),
-        }
+        lines
     }
+}
 
-    fn told(&self, lines: &[Line]) -> String {
-        if self.json {
-            let rows: Vec<_> = lines.iter().map(Line::json).collect();
-            return serde_json::json!({ "seed": self.seed, "rows": rows }).to_string();
-        }
-        let n = lines.first().map_or(0, |line| line.counts[2].encounters);
-        let mut text = vec![
-            format!("{n} encounters a cell; collisions in %, and their speed in m/s"),
-            format!(
-                "{:<33} {:<8} {:>12} {:>12} {:>12} {:>8} {:>8}",
-                "beyond the contract",
-                "others",
-                "no guard",
-                "plain rule",
-                "shield",
-                "flagged",
-                "noticed"
-            ),
-        ];
-        text.extend(lines.iter().map(Line::text));
-        text.join("\n")
+impl Check for Beyond {
+    fn check(&self) -> Result<Checked, Failure> {
+        let lines = self.lines();
+        let within = shielded(lines.iter().filter(|line| line.row == ROWS[0]));
+        let all = shielded(lines.iter());
+        let said = format!(
+            "{} collisions within the contract, of {} encounters",
+            within.collisions, within.encounters
+        );
+        let reported = format!(
+            "{} of {} collisions beyond the contract reported before",
+            all.flagged - within.flagged,
+            all.collisions - within.collisions
+        );
+        let objects: Vec<_> = lines.iter().map(Line::json).collect();
+        Ok(Checked {
+            text: table(&lines),
+            json: serde_json::json!({ "seed": self.seed, "rows": objects }),
+            summary: format!("{said}; {reported}"),
+            findings: vec![
+                Finding::new(Kind::Beyond, WITHIN, within.collisions == 0, &said),
+                Finding::new(
+                    Kind::Beyond,
+                    REPORTED,
+                    all.flagged == all.collisions,
+                    reported,
+                ),
+            ],
+            open: (within.collisions > 0).then_some(said),
+        })
     }
+}
+
+/// What was seen behind the shield.
+fn shielded<'l>(lines: impl Iterator<Item = &'l Line>) -> Count {
+    let counts = lines.map(|line| line.counts[2]);
+    counts.fold(Count::default(), Count::plus)
+}
+
+fn table(lines: &[Line]) -> String {
+    let n = lines.first().map_or(0, |line| line.counts[2].encounters);
+    let mut text = vec![
+        format!("{n} encounters a cell; collisions in %, and their speed in m/s"),
+        format!(
+            "{:<33} {:<8} {:>12} {:>12} {:>12} {:>8} {:>8}",
+            "beyond the contract",
+            "others",
+            "no guard",
+            "plain rule",
+            "shield",
+            "flagged",
+            "noticed"
+        ),
+    ];
+    text.extend(lines.iter().map(Line::text));
+    text.join("\n")
 }
 
 impl Line {

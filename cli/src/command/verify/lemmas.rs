@@ -1,12 +1,13 @@
 //! `cede verify lemmas`.
 
+use super::checked::{Check, Checked, Finding, open};
 use crate::failure::Failure;
+use crate::safety::Kind;
 use crate::threads::Threads;
 use cede_data::output;
 use cede_verify::lemma::{Answer, Lemma, Quantity, Settled, Solver, SolverError, lemmas, shipped};
 use clap::Args;
 use rayon::prelude::*;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -46,29 +47,18 @@ type SettledLemma = (Lemma, Settled);
 impl Lemmas {
     /// Runs the command.
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let chosen: Vec<Lemma> = lemmas()
-            .into_iter()
-            .filter(|lemma| self.only.as_deref().is_none_or(|only| only == lemma.id))
-            .collect();
         match self.write.as_slice() {
             [form, file] => return self.print(form, file),
-            [folder] => write(folder, &chosen)?,
+            [folder] => write(folder, &self.chosen())?,
             _ => {}
         }
-        let solver = Solver::find(self.solver.as_deref()).map_err(unusable)?;
-        let rows = self.settle(&solver, chosen)?;
-        // A closed pipe (`| head`) is not an error.
-        let _ = writeln!(std::io::stdout(), "{}", self.told(&solver, &rows));
-        let open: Vec<&str> = rows
-            .iter()
-            .filter(|(_, settled)| !settled.proved())
-            .map(|(lemma, _)| lemma.id)
-            .collect();
-        if open.is_empty() {
-            Ok(())
-        } else {
-            Err(Failure::Check(format!("not proved: {}", open.join(", "))))
-        }
+        self.threads.start()?;
+        self.check()?.tell(self.json)
+    }
+
+    fn chosen(&self) -> Vec<Lemma> {
+        let only = |lemma: &Lemma| self.only.as_deref().is_none_or(|only| only == lemma.id);
+        lemmas().into_iter().filter(only).collect()
     }
 
     /// Writes what another prover is asked about.
@@ -91,24 +81,41 @@ impl Lemmas {
         Ok(())
     }
 
-    fn settle(&self, solver: &Solver, lemmas: Vec<Lemma>) -> Result<Vec<SettledLemma>, Failure> {
+    fn settle(&self, solver: &Solver) -> Result<Vec<SettledLemma>, Failure> {
         let limit = Duration::from_secs(self.timeout);
         let settle = |lemma: Lemma| {
             let settled = lemma.settle(solver, limit).map_err(unusable)?;
             Ok((lemma, settled))
         };
-        self.threads.start()?;
-        lemmas.into_par_iter().map(settle).collect()
+        self.chosen().into_par_iter().map(settle).collect()
     }
+}
 
-    fn told(&self, solver: &Solver, rows: &[SettledLemma]) -> String {
-        if self.json {
-            let rows: Vec<_> = rows.iter().map(json).collect();
-            return serde_json::json!({ "solver": solver.version(), "lemmas": rows }).to_string();
-        }
-        let rows = rows.iter().map(text).collect::<Vec<_>>().join("\n");
-        format!("{rows}\nby Z3 {}", solver.version())
+impl Check for Lemmas {
+    fn check(&self) -> Result<Checked, Failure> {
+        let solver = Solver::find(self.solver.as_deref()).map_err(unusable)?;
+        let rows = self.settle(&solver)?;
+        let unproved = rows.iter().filter(|(_, settled)| !settled.proved());
+        let open = open("not proved", unproved.map(|(lemma, _)| lemma.id));
+        let proved = rows.iter().filter(|(_, settled)| settled.proved()).count();
+        let lines = rows.iter().map(text).collect::<Vec<_>>().join("\n");
+        let (version, objects) = (solver.version(), rows.iter().map(json).collect::<Vec<_>>());
+        Ok(Checked {
+            text: format!("{lines}\nby Z3 {version}"),
+            json: serde_json::json!({ "solver": version, "lemmas": objects }),
+            summary: format!(
+                "{proved} of {} lemmas proved, each refuted with one rule broken, by Z3 {version}",
+                rows.len()
+            ),
+            findings: rows.iter().map(finding).collect(),
+            open,
+        })
     }
+}
+
+fn finding((lemma, settled): &SettledLemma) -> Finding {
+    let said = format!("{}: {}", word(settled), lemma.says);
+    Finding::new(Kind::Lemma, lemma.id, settled.proved(), said)
 }
 
 /// Checks that `name` is the name of a lemma.

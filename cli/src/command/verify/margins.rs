@@ -1,13 +1,14 @@
 //! `cede verify margins`.
 
+use super::checked::{Check, Checked, Finding};
 use crate::contract::Named;
 use crate::failure::Failure;
+use crate::safety::Kind;
 use crate::threads::Threads;
 use cede_controller::Contract;
 use cede_controller::junction::zone::INFLATION;
 use cede_verify::margin::{Bound, Predicate, bound, shortfall};
 use clap::Args;
-use std::io::Write as _;
 
 /// The text below the options in `cede help verify margins`.
 const HELP: &str = "\
@@ -62,23 +63,7 @@ impl Margins {
     /// Runs the command.
     pub(crate) fn run(self) -> Result<(), Failure> {
         self.threads.start()?;
-        let short = shortfall(&self.contract.unwrap_or_default().0);
-        let rows = self.rows();
-        // A closed pipe (`| head`) is not an error.
-        let _ = writeln!(std::io::stdout(), "{}", self.told(&rows, short));
-        let mut open: Vec<String> = rows
-            .iter()
-            .filter(|row| !row.shown())
-            .map(MarginRow::open)
-            .collect();
-        if short * FASTEST > f64::from(INFLATION) {
-            open.push(format!("plans go {short:e} s too short"));
-        }
-        if open.is_empty() {
-            Ok(())
-        } else {
-            Err(Failure::Check(format!("not shown: {}", open.join("; "))))
-        }
+        self.check()?.tell(self.json)
     }
 
     fn rows(&self) -> Vec<MarginRow> {
@@ -100,24 +85,44 @@ impl Margins {
         })
         .collect()
     }
+}
 
-    fn told(&self, rows: &[MarginRow], short: f64) -> String {
-        if self.json {
-            let rows: Vec<_> = rows.iter().map(MarginRow::json).collect();
-            return serde_json::json!({ "margins": rows, "going_short_s": short }).to_string();
+impl Check for Margins {
+    fn check(&self) -> Result<Checked, Failure> {
+        let short = shortfall(&self.contract.unwrap_or_default().0);
+        let rows = self.rows();
+        let mut open: Vec<String> = rows
+            .iter()
+            .filter(|row| !row.shown())
+            .map(MarginRow::open)
+            .collect();
+        if short * FASTEST > f64::from(INFLATION) {
+            open.push(format!("plans go {short:e} s too short"));
         }
-        let mut lines = vec![format!(
-            "{:<26} {:<38} {:>9} {:>11} {:>8} {:>9}",
-            "predicate", "contract", "boxes", "at most, mm", "met, mm", "slack, mm"
-        )];
-        lines.extend(rows.iter().map(MarginRow::text));
-        let (micros, mm) = (1e6 * short, 1e3 * short * FASTEST);
-        lines.push(format!(
-            "Plans go at most {micros:.1} µs too short, for every f32 up to a minute: {mm:.3} mm at {FASTEST} m/s, of {:.0} mm by which footprints are inflated.",
-            1e3 * INFLATION
-        ));
-        lines.join("\n")
+        let largest = rows.iter().map(|row| row.bound.error).fold(0.0, f64::max);
+        let objects: Vec<_> = rows.iter().map(MarginRow::json).collect();
+        Ok(Checked {
+            text: table(&rows, short),
+            json: serde_json::json!({ "margins": objects, "going_short_s": short }),
+            summary: format!("rounding moves a margin by at most {:.2} mm", 1e3 * largest),
+            findings: rows.iter().map(MarginRow::finding).collect(),
+            open: (!open.is_empty()).then(|| format!("not shown: {}", open.join("; "))),
+        })
     }
+}
+
+fn table(rows: &[MarginRow], short: f64) -> String {
+    let mut lines = vec![format!(
+        "{:<26} {:<38} {:>9} {:>11} {:>8} {:>9}",
+        "predicate", "contract", "boxes", "at most, mm", "met, mm", "slack, mm"
+    )];
+    lines.extend(rows.iter().map(MarginRow::text));
+    let (micros, mm) = (1e6 * short, 1e3 * short * FASTEST);
+    lines.push(format!(
+        "Plans go at most {micros:.1} µs too short, for every f32 up to a minute: {mm:.3} mm at {FASTEST} m/s, of {:.0} mm by which footprints are inflated.",
+        1e3 * INFLATION
+    ));
+    lines.join("\n")
 }
 
 impl MarginRow {
@@ -140,6 +145,16 @@ impl MarginRow {
             1e3 * self.slack,
             self.verdict()
         )
+    }
+
+    fn finding(&self) -> Finding {
+        let said = format!(
+            "{}: at most {:.3} mm, {}",
+            self.verdict(),
+            1e3 * self.bound.error,
+            self.contract
+        );
+        Finding::new(Kind::Margin, self.predicate.name(), self.shown(), said)
     }
 
     /// The inputs with the largest error.

@@ -1,14 +1,15 @@
 //! `cede verify policy`.
 
+use super::checked::{Check, Checked, Finding, open};
 use crate::failure::Failure;
+use crate::safety::Kind;
 use crate::threads::Threads;
 use cede_controller::policy::weights::words;
 use cede_controller::{Perspective, Weights};
 use cede_formats::property::{Properties, StateProperty};
-use cede_verify::policy::{Finding, Settled, Subject};
+use cede_verify::policy::{self, Settled, Subject};
 use clap::Args;
 use miette::{IntoDiagnostic, WrapErr, miette};
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -18,7 +19,7 @@ A proof is about the controller's f32 arithmetic; a refutation is a state at whi
 Exit code 1 if a property is not proved.";
 
 /// The claimed properties of the embedded policy.
-const PROPERTIES: &str = include_str!("../../../../docs/safety/policy.toml");
+pub(super) const PROPERTIES: &str = include_str!("../../../../docs/safety/policy.toml");
 
 /// Options of `cede verify policy`.
 #[derive(Args)]
@@ -49,24 +50,8 @@ pub(crate) struct Policy {
 impl Policy {
     /// Runs the command.
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let (place, words) = policy_words(self.weights.as_deref())?;
-        let weights = named(place, Weights::parse(&words).map_err(|e| miette!("{e}")))?;
-        let subject = named(place, Subject::new(weights).into_diagnostic())?;
-        let properties = self.properties()?;
         self.threads.start()?;
-        let rows: Vec<PropertyRow<'_>> = properties.iter().map(|p| self.row(&subject, p)).collect();
-        // A closed pipe (`| head`) is not an error.
-        let _ = writeln!(std::io::stdout(), "{}", self.told(&subject, &rows));
-        let open: Vec<&str> = rows
-            .iter()
-            .filter(|r| r.settled.finding != Finding::Proved)
-            .map(|r| r.property.id.as_str())
-            .collect();
-        if open.is_empty() {
-            Ok(())
-        } else {
-            Err(Failure::Check(format!("not proved: {}", open.join(", "))))
-        }
+        self.check()?.tell(self.json)
     }
 
     fn properties(&self) -> Result<Vec<StateProperty>, Failure> {
@@ -91,20 +76,34 @@ impl Policy {
             largest,
         }
     }
+}
 
-    fn told(&self, subject: &Subject<'_>, rows: &[PropertyRow<'_>]) -> String {
-        if self.json {
-            let perspective = match subject.perspective() {
-                Perspective::Joint => "joint",
-                Perspective::Ego => "ego",
-            };
-            let rows: Vec<_> = rows.iter().map(PropertyRow::json).collect();
-            return serde_json::json!({ "semantics": "f32", "perspective": perspective, "properties": rows }).to_string();
-        }
-        rows.iter()
-            .map(PropertyRow::text)
-            .collect::<Vec<_>>()
-            .join("\n")
+impl Check for Policy {
+    fn check(&self) -> Result<Checked, Failure> {
+        let (place, words) = policy_words(self.weights.as_deref())?;
+        let weights = named(place, Weights::parse(&words).map_err(|e| miette!("{e}")))?;
+        let subject = named(place, Subject::new(weights).into_diagnostic())?;
+        let perspective = match subject.perspective() {
+            Perspective::Joint => "joint",
+            Perspective::Ego => "ego",
+        };
+        let properties = self.properties()?;
+        let rows: Vec<PropertyRow<'_>> = properties.iter().map(|p| self.row(&subject, p)).collect();
+        let unproved = rows.iter().filter(|row| !row.proved());
+        let objects: Vec<_> = rows.iter().map(PropertyRow::json).collect();
+        let texts: Vec<_> = rows.iter().map(PropertyRow::text).collect();
+        let checked: usize = rows.iter().map(|row| row.settled.checked).sum();
+        Ok(Checked {
+            text: texts.join("\n"),
+            json: serde_json::json!({ "semantics": "f32", "perspective": perspective, "properties": objects }),
+            summary: format!(
+                "{} of {} properties proved, {checked} regions checked independently",
+                rows.iter().filter(|row| row.proved()).count(),
+                rows.len()
+            ),
+            findings: rows.iter().map(PropertyRow::finding).collect(),
+            open: open("not proved", unproved.map(|row| row.property.id.as_str())),
+        })
     }
 }
 
@@ -134,10 +133,25 @@ struct PropertyRow<'p> {
 impl PropertyRow<'_> {
     fn word(&self) -> &'static str {
         match self.settled.finding {
-            Finding::Proved => "proved",
-            Finding::Refuted { .. } => "refuted",
-            Finding::Unsettled => "unsettled",
+            policy::Finding::Proved => "proved",
+            policy::Finding::Refuted { .. } => "refuted",
+            policy::Finding::Unsettled => "unsettled",
         }
+    }
+
+    fn proved(&self) -> bool {
+        self.settled.finding == policy::Finding::Proved
+    }
+
+    fn finding(&self) -> Finding {
+        let Settled {
+            regions, checked, ..
+        } = self.settled;
+        let said = format!(
+            "{}: {regions} regions, {checked} checked independently",
+            self.word()
+        );
+        Finding::new(Kind::Property, &self.property.id, self.proved(), said)
     }
 
     fn text(&self) -> String {
@@ -160,7 +174,7 @@ impl PropertyRow<'_> {
             line += &format!(", differences up to {rounding:.0e} m/s² of rounding");
         }
         line.push(')');
-        if let Finding::Refuted {
+        if let policy::Finding::Refuted {
             state: [d, v, other_d, other_v],
             setting,
             acceleration,
@@ -182,7 +196,7 @@ impl PropertyRow<'_> {
 
     fn json(&self) -> serde_json::Value {
         let witness = match &self.settled.finding {
-            Finding::Refuted {
+            policy::Finding::Refuted {
                 state,
                 setting,
                 acceleration,

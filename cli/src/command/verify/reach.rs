@@ -1,14 +1,15 @@
 //! `cede verify reach`.
 
+use super::checked::{Check, Checked, Finding, open};
 use super::policy::{named, policy_words};
 use crate::failure::Failure;
+use crate::safety::Kind;
 use crate::threads::Threads;
 use cede_controller::Weights;
 use cede_verify::policy::Subject;
-use cede_verify::reach::{Finding, Scenario, Scenarios, Settled, settle};
+use cede_verify::reach::{self, Scenario, Scenarios, Settled, settle};
 use clap::Args;
 use miette::{IntoDiagnostic, miette};
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -17,7 +18,7 @@ const HELP: &str = "\
 Starts from all states of a region. Exit code 1 if a scenario's claim is not proved.";
 
 /// The claims about the embedded policy with its shield.
-const SCENARIOS: &str = include_str!("../../../../docs/safety/reach.toml");
+pub(super) const SCENARIOS: &str = include_str!("../../../../docs/safety/reach.toml");
 
 /// Options of `cede verify reach`.
 #[derive(Args)]
@@ -42,29 +43,8 @@ pub(crate) struct Reach {
 impl Reach {
     /// Runs the command.
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let (place, words) = policy_words(self.weights.as_deref())?;
-        let weights = named(place, Weights::parse(&words).map_err(|e| miette!("{e}")))?;
-        let subject = named(place, Subject::new(weights).into_diagnostic())?;
-        let scenarios = self.read()?.scenario;
         self.threads.start()?;
-        let limit = Duration::from_secs(self.timeout);
-        let settle = |scenario: Scenario| {
-            let settled = settle(&subject, &scenario, Instant::now() + limit);
-            (scenario, settled)
-        };
-        let settled: Vec<(Scenario, Settled)> = scenarios.into_iter().map(settle).collect();
-        // A closed pipe (`| head`) is not an error.
-        let _ = writeln!(std::io::stdout(), "{}", self.told(&settled));
-        let open: Vec<&str> = settled
-            .iter()
-            .filter(|(_, settled)| settled.finding != Finding::Proved)
-            .map(|(scenario, _)| scenario.id.as_str())
-            .collect();
-        if open.is_empty() {
-            Ok(())
-        } else {
-            Err(Failure::Check(format!("not proved: {}", open.join(", "))))
-        }
+        self.check()?.tell(self.json)
     }
 
     fn read(&self) -> Result<Scenarios, Failure> {
@@ -78,24 +58,58 @@ impl Reach {
             text.and_then(|text| Scenarios::read(&text).into_diagnostic()),
         )
     }
+}
 
-    fn told(&self, settled: &[(Scenario, Settled)]) -> String {
-        if self.json {
-            let rows: Vec<_> = settled.iter().map(json).collect();
-            return serde_json::json!({ "scenarios": rows }).to_string();
-        }
-        settled.iter().map(text).collect::<Vec<_>>().join("\n")
+/// A scenario with its result.
+type SettledScenario = (Scenario, Settled);
+
+impl Check for Reach {
+    fn check(&self) -> Result<Checked, Failure> {
+        let (place, words) = policy_words(self.weights.as_deref())?;
+        let weights = named(place, Weights::parse(&words).map_err(|e| miette!("{e}")))?;
+        let subject = named(place, Subject::new(weights).into_diagnostic())?;
+        let limit = Duration::from_secs(self.timeout);
+        let settle = |scenario: Scenario| {
+            let settled = settle(&subject, &scenario, Instant::now() + limit);
+            (scenario, settled)
+        };
+        let rows: Vec<SettledScenario> = self.read()?.scenario.into_iter().map(settle).collect();
+        let unproved = rows.iter().filter(|row| !proved(row));
+        Ok(Checked {
+            text: rows.iter().map(text).collect::<Vec<_>>().join("\n"),
+            json: serde_json::json!({ "scenarios": rows.iter().map(json).collect::<Vec<_>>() }),
+            summary: format!(
+                "{} of {} claims about the closed loop proved",
+                rows.iter().filter(|row| proved(row)).count(),
+                rows.len()
+            ),
+            findings: rows.iter().map(finding).collect(),
+            open: open(
+                "not proved",
+                unproved.map(|(scenario, _)| scenario.id.as_str()),
+            ),
+        })
     }
 }
 
-fn word(finding: &Finding) -> &'static str {
+fn proved((_, settled): &SettledScenario) -> bool {
+    settled.finding == reach::Finding::Proved
+}
+
+fn finding(row: &SettledScenario) -> Finding {
+    let (scenario, settled) = row;
+    let said = format!("{}: {} tubes", word(&settled.finding), settled.tubes);
+    Finding::new(Kind::Scenario, &scenario.id, proved(row), said)
+}
+
+fn word(finding: &reach::Finding) -> &'static str {
     match finding {
-        Finding::Proved => "proved",
-        Finding::Unsettled(_) => "unsettled",
+        reach::Finding::Proved => "proved",
+        reach::Finding::Unsettled(_) => "unsettled",
     }
 }
 
-fn text((scenario, settled): &(Scenario, Settled)) -> String {
+fn text((scenario, settled): &SettledScenario) -> String {
     let mut line = format!(
         "{:<6} {:<9} {} ({} tubes, at most {:.1} s)",
         scenario.id,
@@ -104,7 +118,7 @@ fn text((scenario, settled): &(Scenario, Settled)) -> String {
         settled.tubes,
         settled.latest
     );
-    if let Finding::Unsettled([d, v, other_d, other_v]) = settled.finding {
+    if let reach::Finding::Unsettled([d, v, other_d, other_v]) = settled.finding {
         line += &format!(
             "\n       open for the ego at {d:.2?} m, {v:.2?} m/s, the other at {other_d:.2?} m, {other_v:.2?} m/s"
         );
@@ -112,10 +126,10 @@ fn text((scenario, settled): &(Scenario, Settled)) -> String {
     line
 }
 
-fn json((scenario, settled): &(Scenario, Settled)) -> serde_json::Value {
+fn json((scenario, settled): &SettledScenario) -> serde_json::Value {
     let open = match settled.finding {
-        Finding::Proved => None,
-        Finding::Unsettled(region) => Some(region),
+        reach::Finding::Proved => None,
+        reach::Finding::Unsettled(region) => Some(region),
     };
     serde_json::json!({
         "id": scenario.id, "title": scenario.title, "finding": word(&settled.finding), "open": open,
