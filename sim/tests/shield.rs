@@ -78,7 +78,7 @@ fn two_vehicles_at_rest_pass_by_precedence_but_for_a_few_and_may_wait_for_ever_w
 /// Of three and more some still block each other for ever; docs/theorem.md says how.
 #[test]
 fn several_vehicles_at_rest_pass_by_precedence() {
-    for (vehicles, stuck) in [(3, 1), (6, 6)] {
+    for (vehicles, stuck) in [(3, 1), (6, 7)] {
         let setup = Setup {
             vehicles,
             ..at_rest(Contract::ALL_WAY_STOP)

@@ -123,7 +123,7 @@ pub(crate) fn all<R: Rules + Clone + 'static>() -> Vec<Check> {
         ),
         check(
             "approach",
-            "Approach::decide is the policy's proposal through the shield, to the bit.",
+            "Without a rule of precedence, Approach::decide is the policy's proposal through the shield, to the bit.",
             twins::approach,
         ),
         check(
