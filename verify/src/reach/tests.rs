@@ -33,7 +33,7 @@ fn subject(words: &[u32]) -> Subject<'_> {
 
 /// States of the two (distance, speed) as the real controller drives them.
 fn drive(scenario: &Scenario, from: [f32; 4], random: &mut Pcg64, steps: usize) -> Vec<[f64; 4]> {
-    let junction = geometry(scenario.setting().right_of_way);
+    let junction = geometry(&scenario.setting());
     let conflict = junction.conflict(EGO, OTHER).expect("two paths");
     let policy = Policy::new(embedded::words()).expect("a sound file");
     let drive = Drive::new(policy, Contract::WORST_CASE, Part::Left);
