@@ -225,7 +225,9 @@ impl Properties {
                 || property.turns.is_empty()
                 || property.controls.is_empty()
             {
-                return fault("conflicts, right_of_way, turns and controls must each name something");
+                return fault(
+                    "conflicts, right_of_way, turns and controls must each name something",
+                );
             }
             if !property
                 .turns

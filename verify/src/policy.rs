@@ -33,7 +33,9 @@ pub struct Subject<'a> {
 
 /// The policy's features are not functions of the state that properties speak of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("properties need a network over the features `route`, `traffic`, `scene` or `rights`, not `raw`")]
+#[error(
+    "properties need a network over the features `route`, `traffic`, `scene` or `rights`, not `raw`"
+)]
 pub struct UnsupportedFeatures;
 
 impl<'a> Subject<'a> {

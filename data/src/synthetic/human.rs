@@ -73,7 +73,7 @@ impl Character {
             overshoot: around(-0.6, 1.0, -3.0, 1.5),
             svo,
             gap: around(2.5, 0.5, 1.2, 4.0) * (0.6 + 0.4 * svo / FRAC_PI_4),
-            lag: around(0.4, 0.6, -0.6, 2.0) + 0.5 * (svo - FRAC_PI_4) / FRAC_PI_4,
+            lag: around(1.2, 0.7, -0.3, 3.0) + 0.5 * (svo - FRAC_PI_4) / FRAC_PI_4,
             reaction: around(0.8, 0.3, 0.3, 1.8),
             patience: around(2.5, 0.8, 1.0, 5.0),
             unsteadiness: around(0.2, 0.08, 0.05, 0.4),
@@ -83,7 +83,11 @@ impl Character {
 
     /// How far past the place where it waits (m) its bumper stops: only a line is overshot.
     fn overshoot(&self, line: bool) -> f32 {
-        if line { self.overshoot } else { self.overshoot.min(0.0) }
+        if line {
+            self.overshoot
+        } else {
+            self.overshoot.min(0.0)
+        }
     }
 }
 
@@ -192,11 +196,12 @@ impl Human {
         if let Some(leader) = seen.leader {
             wish = wish.min(self.follow(seen.speed, leader));
         }
-        if self.going {
+        if self.going || !seen.must_stop {
             for rival in seen.rivals.iter().filter(|rival| rival.ahead) {
                 wish = wish.min(self.let_pass(seen, rival));
             }
-        } else {
+        }
+        if !self.going {
             wish = wish.min(self.approach_line(seen));
         }
         self.act(seen.speed, wish)
@@ -264,7 +269,8 @@ impl Human {
         let leave = travel_time(rival.own.1, seen.speed, c.acceleration, top);
         if rival.ahead {
             let margin = 0.4 * (c.svo / FRAC_PI_4);
-            return arrive > clear_time(rival) + margin - 0.3;
+            // Who goes on behind somebody who waits there stands in others' way.
+            return rival.speed >= STANDING && arrive > clear_time(rival) + margin - 0.3;
         }
         let (theirs, gap) = match rival.right {
             Right::Mine => (false, c.gap),
@@ -282,6 +288,9 @@ impl Human {
         let distance = rival.own.0 - 0.3;
         if rival.own.0 <= 0.0 {
             return f32::INFINITY;
+        }
+        if distance <= 0.0 {
+            return -1.0;
         }
         let wait = clear_time(rival) + 0.3;
         let timed = 2.0 * (distance - seen.speed * wait) / (wait * wait);

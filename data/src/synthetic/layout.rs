@@ -170,18 +170,21 @@ impl Layout {
         layout
     }
 
-    /// Where the front bumper on movement `i` waits: without a sign before the first zone in which
-    /// another does not give way to it.
+    /// Where the front bumper on movement `i` waits: without a sign before the first zone with another that goes
+    /// first, or with one that neither gives way nor goes first, unless both turn left.
     fn waits(&self, i: usize) -> f32 {
-        const SETBACK: f32 = 1.0;
+        const SETBACK: f32 = 1.2;
         const HALF_CAR: f32 = 2.4;
         let own = &self.movements[i];
-        if self.sign(&self.arms[own.from]).is_some() {
+        if self.has_sign(own) {
             return own.line;
         }
+        let both_left =
+            |other: &Movement| [own, other].map(|m| m.manoeuvre) == [Manoeuvre::Left; 2];
+        let gives_way = |other| self.rule(other, own) == Right::Theirs;
         let zones = self.relations[i].iter().zip(&self.movements);
         let bound = zones.filter_map(|(relation, other)| match relation {
-            RouteRelation::Conflict(zone) if self.rule(other, own) != Right::Theirs => {
+            RouteRelation::Conflict(zone) if !gives_way(other) && !both_left(other) => {
                 Some(zone.own.0 - SETBACK + HALF_CAR)
             }
             _ => None,
@@ -266,7 +269,7 @@ impl Style {
         };
         let speeds = match control {
             Control::AllWayStop => [rng.random_range(5.5..12.0); 2],
-            Control::TwoWayStop => [rng.random_range(7.0..16.0), rng.random_range(5.5..11.0)],
+            Control::TwoWayStop => [rng.random_range(8.0..16.0), rng.random_range(5.5..11.0)],
             Control::Yield => [rng.random_range(6.0..14.0), rng.random_range(5.5..11.0)],
             Control::Uncontrolled => [rng.random_range(5.0..9.0); 2],
         };
@@ -289,7 +292,7 @@ impl Style {
         let angle = degrees.to_radians();
         let road = index % 2;
         let speed = self.speeds[road] * rng.random_range(0.8..1.25);
-        let line = 10.5 + 7.0 * self.size + self.widening() + rng.random_range(0.0..3.0);
+        let line = 10.5 + 7.0 * self.size + 1.3 * self.widening() + rng.random_range(0.0..3.0);
         let minor = self.control != Control::AllWayStop
             && self.control != Control::Uncontrolled
             && road == 1;
@@ -303,7 +306,7 @@ impl Style {
             edge: line + rng.random_range(20.0..50.0) + 3.0 * (speed - 8.0).max(0.0),
             speed,
             major: road == 0,
-            demand: uneven * uneven * uneven * if minor { 0.4 } else { 1.0 },
+            demand: uneven * uneven * uneven * if minor { 0.6 } else { 1.0 },
         }
     }
 
@@ -339,12 +342,7 @@ fn draw_movement(
     let lanes = [a, b].map(|arm| arm.lane(manoeuvre));
     let from_lane = |distance| a.inbound(distance, lanes[0]);
     let to_lane = |distance| b.outbound(distance, lanes[1]);
-    let points = curve(
-        from_lane(reach),
-        entry,
-        to_lane(reach),
-        exit,
-    );
+    let points = curve(from_lane(reach), entry, to_lane(reach), exit);
     let points = [from_lane(a.edge)]
         .into_iter()
         .chain(points)

@@ -49,7 +49,11 @@ impl Layout {
     /// The lanes towards the centre and away from it on `arm`, and the line at their end.
     fn approach(&self, arm: &Arm, osm: &mut Osm) -> Bound {
         let line = osm.way(&Way {
-            class: if self.stops(arm) { "stop_line" } else { "virtual" },
+            class: if self.stops(arm) {
+                "stop_line"
+            } else {
+                "virtual"
+            },
             subtype: "",
             points: vec![
                 arm.across(arm.line, 0.0),
@@ -223,7 +227,10 @@ impl Osm {
     }
 
     fn regulation(&mut self, subtype: &str, members: &str) -> u32 {
-        self.relation(members, &[("type", "regulatory_element"), ("subtype", subtype)])
+        self.relation(
+            members,
+            &[("type", "regulatory_element"), ("subtype", subtype)],
+        )
     }
 
     fn relation(&mut self, members: &str, tags: &[(&str, &str)]) -> u32 {

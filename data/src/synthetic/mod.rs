@@ -95,8 +95,8 @@ impl Generated {
         let layout = Layout::draw(site_of(file), seed);
         let mut rng = stream(seed, file, Purpose::Traffic);
         let flow = match layout.control {
-            Control::AllWayStop => rng.random_range(0.12..0.8),
-            Control::TwoWayStop | Control::Yield => rng.random_range(0.12..0.7),
+            Control::AllWayStop => rng.random_range(0.12..0.7),
+            Control::TwoWayStop | Control::Yield => rng.random_range(0.2..0.8),
             Control::Uncontrolled => rng.random_range(0.08..0.3),
         };
         let tracks = Traffic::new(&layout, flow, rng).record(WARM_UP, STEPS);

@@ -27,10 +27,15 @@ impl Layout {
         }
     }
 
+    /// Whether there is a sign on this way.
+    pub(super) fn has_sign(&self, movement: &Movement) -> bool {
+        self.sign(&self.arms[movement.from]).is_some()
+    }
+
     /// Who goes first if both come at once: the major road, who comes from the
     /// right, and oncoming traffic before who turns left across it.
     pub(super) fn rule(&self, own: &Movement, other: &Movement) -> Right {
-        let bound = [own, other].map(|m| self.sign(&self.arms[m.from]).is_some());
+        let bound = [own, other].map(|m| self.has_sign(m));
         let theirs = match bound {
             [true, false] => true,
             [false, true] => false,

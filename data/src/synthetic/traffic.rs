@@ -16,6 +16,8 @@ const CAPACITY: usize = 20;
 /// Within this distance (m) of its line, and slower than [`ARRIVED_SPEED`], a vehicle has arrived.
 const ARRIVED_DISTANCE: f32 = 3.0;
 const ARRIVED_SPEED: f32 = 3.0;
+/// Of two of whom neither gives way the nearer is ahead from this distance (m) to their zone on.
+const NEARER: f32 = 15.0;
 /// Two who arrive within this time (s) came together.
 const TOGETHER: f32 = 0.5;
 
@@ -267,16 +269,38 @@ impl<'a> Traffic<'a> {
         else {
             return None;
         };
-        let before = |theirs| own.entered.is_none_or(|mine| (theirs, j) < (mine, i));
-        let inside = other.state.s > zone.other.0 && own.state.s < zone.own.0;
+        let (before, its_before) = (zone.own.0 - own.state.s, zone.other.0 - other.state.s);
         let rival = Rival {
-            own: (zone.own.0 - own.state.s, zone.own.1 - own.state.s),
-            other: (zone.other.0 - other.state.s, zone.other.1 - other.state.s),
+            own: (before, zone.own.1 - own.state.s),
+            other: (its_before, zone.other.1 - other.state.s),
             speed: other.state.v,
-            ahead: inside || other.entered.is_some_and(before),
+            ahead: self.is_ahead(i, j, before, its_before),
             right: self.right(own, other),
         };
         (rival.own.1 > 0.0 && rival.other.1 > 0.0).then_some(rival)
+    }
+
+    /// Whether vehicle `j` is ahead of `i`, if they have `before` and `its_before` (m) left to their shared zone:
+    /// it is in the zone already, or has entered the intersection earlier. Of two of whom neither gives way to
+    /// the other by the rules the nearer is ahead.
+    fn is_ahead(&self, i: usize, j: usize, before: f32, its_before: f32) -> bool {
+        let (own, other) = (&self.vehicles[i], &self.vehicles[j]);
+        let inside = before > 0.0 && its_before < 0.0;
+        let earlier = match (own.entered, other.entered) {
+            (Some(mine), Some(theirs)) => (theirs, j) < (mine, i),
+            (mine, theirs) => theirs.is_some() && mine.is_none(),
+        };
+        let nearer = its_before < NEARER && (its_before, j) < (before, i);
+        inside || earlier || (nearer && own.entered.is_none() && self.is_open(own, other))
+    }
+
+    /// Whether neither has a sign, and no rule tells one to give way to the other.
+    fn is_open(&self, own: &Vehicle, other: &Vehicle) -> bool {
+        let layout = self.layout;
+        let [mine, theirs] = [own, other].map(|v| &layout.movements[v.movement]);
+        let unsigned = [mine, theirs].iter().all(|m| !layout.has_sign(m));
+        let rules = [layout.rule(mine, theirs), layout.rule(theirs, mine)];
+        unsigned && rules == [Right::Mine; 2]
     }
 
     /// Who of the two goes first.

@@ -1,6 +1,8 @@
 //! Scenarios as a readable file.
 
-use cede_controller::{Class, ConflictKind, Control, Footprint, Junction, PathId, Point, RightOfWay, Route};
+use cede_controller::{
+    Class, ConflictKind, Control, Footprint, Junction, PathId, Point, RightOfWay, Route,
+};
 use cede_formats::property::{Right, Setting};
 use serde::Deserialize;
 
