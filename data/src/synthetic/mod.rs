@@ -148,7 +148,7 @@ mod tests {
 
     #[test]
     fn every_class_of_site_and_conflict_occurs() {
-        let data = Dataset::synthetic(250, 1);
+        let data = Dataset::synthetic(1000, 1);
         let class = |e: &Encounter| e.id.site[4..9].to_owned();
         let classes: HashSet<String> = data.encounters.iter().map(class).collect();
         assert_eq!(classes.len(), 9, "{classes:?}");
