@@ -72,6 +72,7 @@ fn property(claim: Claim) -> StateProperty {
         conflicts: vec![Kind::Crossing],
         right_of_way: vec![Right::Other, Right::Unsettled],
         turns: vec![[0.5, 0.0]],
+        controls: vec![[Control::Unknown; 2]],
         claim,
     }
 }

@@ -21,6 +21,7 @@ fn scenario() -> Scenario {
         other_speed: [3.0, 5.0],
         other_acceleration: [-1.0, 1.0],
         right_of_way: Right::Unsettled,
+        controls: Default::default(),
         policy: true,
         shield: true,
         claim: Claim::NeverBoth { during: 6.0 },
