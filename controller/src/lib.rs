@@ -75,7 +75,7 @@
 //!
 //! | | |
 //! |---|---|
-//! | `embedded-policy` (default) | the policy that ships, `policy::embedded`: 39 KiB |
+//! | `embedded-policy` (default) | the policy that ships, `policy::embedded`: 24 KiB |
 //! | `serde` | contracts and decisions as serde data; a contract that is read is validated |
 //! | `defmt` | contracts and decisions in a `defmt` log |
 //! | `core-sqrt` | square roots by the core, where it has an instruction for them: the same bits in less time |

@@ -19,6 +19,8 @@ pub struct Setting {
     pub right_of_way: RightOfWay,
     /// Sines of the turns still to come, the ego's and the other's; positive to the left.
     pub turns: [f32; 2],
+    /// What obliges the ego and the other to give way where they enter the junction.
+    pub controls: [Control; 2],
 }
 
 impl Setting {
@@ -31,7 +33,7 @@ impl Setting {
     /// The same pair, its place in any number.
     #[must_use]
     pub fn pair_of<R: Elementary>(&self, [d, v, other_d, other_v]: [R; 4]) -> Pair<R> {
-        let vehicle_state = |distance, speed, turn: f32| VehicleState {
+        let vehicle_state = |distance, speed, turn: f32, control| VehicleState {
             pose: Pose {
                 position: Point::new(R::of(0.0), R::of(0.0)),
                 direction: unit(1.0, 0.0),
@@ -43,11 +45,11 @@ impl Setting {
             footprint: Footprint::PAPER,
             leader: None,
             crosser: None,
-            control: Control::Unknown,
+            control,
         };
         Pair {
-            ego: vehicle_state(d, v, self.turns[0]),
-            other: vehicle_state(other_d, other_v, self.turns[1]),
+            ego: vehicle_state(d, v, self.turns[0], self.controls[0]),
+            other: vehicle_state(other_d, other_v, self.turns[1], self.controls[1]),
             kind: self.kind,
             right_of_way: self.right_of_way,
             part: Part::Left,
@@ -87,12 +89,19 @@ pub struct StateProperty {
     /// Sines of the turns still to come, ego's and other's.
     #[serde(default = "straight_on")]
     pub turns: Vec<[f32; 2]>,
+    /// What obliges the ego and the other to give way.
+    #[serde(default = "unknown")]
+    pub controls: Vec<[Control; 2]>,
     /// What is claimed on all of it.
     pub claim: Claim,
 }
 
 fn straight_on() -> Vec<[f32; 2]> {
     vec![[0.0, 0.0]]
+}
+
+fn unknown() -> Vec<[Control; 2]> {
+    vec![[Control::Unknown; 2]]
 }
 
 /// See [`ConflictKind`].
@@ -214,8 +223,11 @@ impl Properties {
             if property.conflicts.is_empty()
                 || property.right_of_way.is_empty()
                 || property.turns.is_empty()
+                || property.controls.is_empty()
             {
-                return fault("conflicts, right_of_way and turns must each name something");
+                return fault(
+                    "conflicts, right_of_way, turns and controls must each name something",
+                );
             }
             if !property
                 .turns
@@ -267,18 +279,21 @@ impl StateProperty {
         let mut settings = Vec::new();
         for kind in &self.conflicts {
             for right in &self.right_of_way {
-                settings.extend(self.turns.iter().map(|&turns| Setting {
-                    kind: match kind {
-                        Kind::Crossing => ConflictKind::Crossing,
-                        Kind::Merging => ConflictKind::Merging,
-                    },
-                    right_of_way: match right {
-                        Right::Ego => RightOfWay::Ego,
-                        Right::Other => RightOfWay::Other,
-                        Right::Unsettled => RightOfWay::Unsettled,
-                    },
-                    turns,
-                }));
+                for &turns in &self.turns {
+                    settings.extend(self.controls.iter().map(|&controls| Setting {
+                        kind: match kind {
+                            Kind::Crossing => ConflictKind::Crossing,
+                            Kind::Merging => ConflictKind::Merging,
+                        },
+                        right_of_way: match right {
+                            Right::Ego => RightOfWay::Ego,
+                            Right::Other => RightOfWay::Other,
+                            Right::Unsettled => RightOfWay::Unsettled,
+                        },
+                        turns,
+                        controls,
+                    }));
+                }
             }
         }
         settings

@@ -165,7 +165,7 @@ def test_a_wrong_observation_is_a_fault_not_an_exception():
 
 def test_the_embedded_policy_and_its_replacement():
     policy = cede.Policy.embedded()
-    assert (policy.features, policy.perspective) == ("scene", "ego")
+    assert (policy.features, policy.perspective) == ("rights", "ego")
     junction, left, _ = crossing()
     approach = cede.Drive(policy).enter(junction, left)
     approach.set_policy(policy)

@@ -15,9 +15,11 @@ fn main() -> Result<(), DataError> {
     let synthetic = Dataset::synthetic(number(1).unwrap_or(3000), number(2).unwrap_or(1) as u64);
     let sets = [
         ("EP0", Dataset::load(Path::new(folder), "EP0")?),
-        ("T, all-way stop", of_class(&synthetic, "SYN-T-AWS")),
+        ("T, all-way stop", of_class(&synthetic, "-T-AWS-")),
         ("MA", Dataset::load(Path::new(folder), "MA")?),
-        ("X, all-way stop", of_class(&synthetic, "SYN-X-AWS")),
+        ("X, all-way stop", of_class(&synthetic, "-X-AWS-")),
+        ("GL", Dataset::load(Path::new(folder), "GL")?),
+        ("two-way stop", of_class(&synthetic, "-TWS-")),
         ("all synthetic", synthetic),
     ];
     statistics(&sets);
@@ -29,7 +31,7 @@ fn main() -> Result<(), DataError> {
 fn of_class(data: &Dataset, class: &str) -> Dataset {
     let mut data = data.clone();
     data.encounters
-        .retain(|e| e.id.site.starts_with(class) && left_meets_oncoming(e));
+        .retain(|e| e.id.site.contains(class) && left_meets_oncoming(e));
     let files: Vec<u16> = data.encounters.iter().map(|e| e.id.file).collect();
     data.recordings
         .retain(|recording| files.contains(&recording.file));

@@ -33,7 +33,9 @@ pub struct Subject<'a> {
 
 /// The policy's features are not functions of the state that properties speak of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("properties need a network over the features `route`, `traffic` or `scene`, not `raw`")]
+#[error(
+    "properties need a network over the features `route`, `traffic`, `scene` or `rights`, not `raw`"
+)]
 pub struct UnsupportedFeatures;
 
 impl<'a> Subject<'a> {
@@ -42,7 +44,8 @@ impl<'a> Subject<'a> {
     /// # Errors
     /// If its features are not of the route, as the paper's raw ones are not.
     pub fn new(weights: Weights<'a>) -> Result<Self, UnsupportedFeatures> {
-        let (FeatureSet::Route | FeatureSet::Traffic | FeatureSet::Scene) = weights.features()
+        let (FeatureSet::Route | FeatureSet::Traffic | FeatureSet::Scene | FeatureSet::Rights) =
+            weights.features()
         else {
             return Err(UnsupportedFeatures);
         };

@@ -42,7 +42,7 @@ pub(crate) fn run() -> Result<(), Failure> {
         rows.extend(plan.judge(&dataset, |row, drives| report.add(row, drives))?);
     }
     println!(
-        "{}\nThe policy has seen synthetic traffic alone, of other seeds; `logistic` and `mean-speed` learn on the training split.\n",
+        "{}\nNo driver has seen these recordings: the policy has learned from other synthetic traffic, `logistic` and `mean-speed` from the training split.\n",
         verdict::sentence(&rows).unwrap_or_default()
     );
     println!("{}", table::compact(&rows));

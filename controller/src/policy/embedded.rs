@@ -15,7 +15,7 @@ mod tests {
     #[test]
     fn the_embedded_policy_is_sound() {
         let policy = Policy::new(super::words()).unwrap();
-        assert_eq!(policy.weights().features(), FeatureSet::Scene);
+        assert_eq!(policy.weights().features(), FeatureSet::Rights);
         assert_eq!(policy.weights().perspective(), Perspective::Ego);
     }
 }

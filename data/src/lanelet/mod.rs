@@ -74,8 +74,13 @@ impl LineKind {
 pub fn read(path: &Path) -> Result<Map, DataError> {
     let text = std::fs::read_to_string(path)
         .map_err(|error| DataError::new(path, Problem::Unreadable(error)))?;
+    parse(path, &text)
+}
+
+/// The map that `text` is; errors name `path`.
+pub(crate) fn parse(path: &Path, text: &str) -> Result<Map, DataError> {
     let wrong = |problem: String| DataError::new(path, Problem::Map(problem));
-    let document = Document::parse(&text).map_err(|error| {
+    let document = Document::parse(text).map_err(|error| {
         let line = u64::from(error.pos().row);
         wrong(error.to_string()).at_line(line)
     })?;

@@ -35,8 +35,10 @@ pub struct Character {
     pub overshoot: f32,
     /// Social value orientation in rad, in [0, π/2]: π/4 is cooperative.
     pub svo: f32,
-    /// Gap (s) that it accepts in front of somebody with the right of way.
+    /// Gap (s) that it accepts where all stop, in front of somebody whose turn it is.
     pub gap: f32,
+    /// Gap (s) that it accepts in front of somebody who does not have to stop.
+    pub lag: f32,
     /// Time (s) from seeing that the way is free until going.
     pub reaction: f32,
     /// How long (s) it waits for somebody who does not move.
@@ -71,10 +73,20 @@ impl Character {
             overshoot: around(-0.6, 1.0, -3.0, 1.5),
             svo,
             gap: around(2.5, 0.5, 1.2, 4.0) * (0.6 + 0.4 * svo / FRAC_PI_4),
+            lag: around(1.2, 0.7, -0.3, 3.0) + 0.5 * (svo - FRAC_PI_4) / FRAC_PI_4,
             reaction: around(0.8, 0.3, 0.3, 1.8),
             patience: around(2.5, 0.8, 1.0, 5.0),
             unsteadiness: around(0.2, 0.08, 0.05, 0.4),
             misjudgement: around(0.0, 0.4, -1.2, 1.2) + 0.6 * (svo - FRAC_PI_4) / FRAC_PI_4,
+        }
+    }
+
+    /// How far past the place where it waits (m) its bumper stops: only a line is overshot.
+    fn overshoot(&self, line: bool) -> f32 {
+        if line {
+            self.overshoot
+        } else {
+            self.overshoot.min(0.0)
         }
     }
 }
@@ -108,7 +120,7 @@ pub struct Rival {
     pub other: (f32, f32),
     /// The other's speed in m/s.
     pub speed: f32,
-    /// Whether the other entered the intersection, and before the driver did.
+    /// Whether the other entered the intersection, and before the driver did, or is in the zone already.
     pub ahead: bool,
     /// Who goes first by the rules.
     pub right: Right,
@@ -123,7 +135,8 @@ pub struct Situation<'a> {
     pub profile: (f32, f32),
     /// What a plain driver drives at most across the intersection, m/s.
     pub crossing_speed: f32,
-    /// Distance (m) from the own bumper to the line; negative past it.
+    /// Distance (m) from the own bumper to where it waits for others: the line, or where their ways begin.
+    /// Negative past it.
     pub to_line: f32,
     /// Whether it has to stop there whatever comes.
     pub must_stop: bool,
@@ -183,11 +196,12 @@ impl Human {
         if let Some(leader) = seen.leader {
             wish = wish.min(self.follow(seen.speed, leader));
         }
-        if self.going {
+        if self.going || !seen.must_stop {
             for rival in seen.rivals.iter().filter(|rival| rival.ahead) {
                 wish = wish.min(self.let_pass(seen, rival));
             }
-        } else {
+        }
+        if !self.going {
             wish = wish.min(self.approach_line(seen));
         }
         self.act(seen.speed, wish)
@@ -218,7 +232,7 @@ impl Human {
     /// Slows down to stop at the line, or to roll up to it.
     fn approach_line(&self, seen: &Situation<'_>) -> f32 {
         let c = &self.character;
-        let distance = seen.to_line + c.overshoot;
+        let distance = seen.to_line + c.overshoot(seen.must_stop);
         let can_still_stop = seen.speed * seen.speed < 2.0 * 2.5 * (distance - 0.2).max(0.0);
         let rolling = if can_still_stop { c.rolling } else { 0.0 };
         slow_to(seen.speed, rolling, distance, c.deceleration)
@@ -227,7 +241,7 @@ impl Human {
     /// Whether to go: sets `going`.
     fn decide(&mut self, seen: &Situation<'_>) {
         let c = self.character;
-        let distance = seen.to_line + c.overshoot;
+        let distance = seen.to_line + c.overshoot(seen.must_stop);
         let standing = seen.speed < STANDING && distance < 1.5;
         self.stood = if standing { self.stood + STEP } else { 0.0 };
         let at_line = if seen.must_stop {
@@ -255,17 +269,18 @@ impl Human {
         let leave = travel_time(rival.own.1, seen.speed, c.acceleration, top);
         if rival.ahead {
             let margin = 0.4 * (c.svo / FRAC_PI_4);
-            return arrive > clear_time(rival) + margin - 0.3;
+            // Who goes on behind somebody who waits there stands in others' way.
+            return rival.speed >= STANDING && arrive > clear_time(rival) + margin - 0.3;
         }
-        let theirs = match rival.right {
-            Right::Mine => false,
-            Right::Theirs => true,
-            Right::FirstCome(lead) => lead + c.misjudgement > 0.0,
+        let (theirs, gap) = match rival.right {
+            Right::Mine => (false, c.gap),
+            Right::Theirs => (true, c.lag),
+            Right::FirstCome(lead) => (lead + c.misjudgement > 0.0, c.gap),
         };
         let hesitates = rival.speed < STANDING && self.stood > c.dwell + c.patience;
         let impatience = 1.0 - 0.02 * self.stood.min(15.0);
         let comes = travel_time(rival.other.0, rival.speed, 1.5, rival.speed.max(5.0));
-        !theirs || hesitates || comes > leave + c.gap * impatience
+        !theirs || hesitates || comes > leave + gap * impatience
     }
 
     /// Comes to the shared zone only when `rival` has left it.
@@ -273,6 +288,9 @@ impl Human {
         let distance = rival.own.0 - 0.3;
         if rival.own.0 <= 0.0 {
             return f32::INFINITY;
+        }
+        if distance <= 0.0 {
+            return -1.0;
         }
         let wait = clear_time(rival) + 0.3;
         let timed = 2.0 * (distance - seen.speed * wait) / (wait * wait);

@@ -19,15 +19,16 @@ pub mod zone;
 pub use files::{WrittenSite, write};
 
 use crate::encounter::Encounter;
-use crate::{Dataset, Files, Recording, Site, extract};
+use crate::{Dataset, Files, Recording, Site, extract, lanelet};
 use layout::Layout;
 use plan::{Control, Purpose, in_test, in_validation, site_of, stream};
 use rand::RngExt;
 use rayon::prelude::*;
+use std::path::Path;
 use traffic::Traffic;
 
-/// Length of a recording in steps: two minutes.
-const STEPS: u32 = 1200;
+/// Length of a recording in steps: one minute.
+const STEPS: u32 = 600;
 /// Steps before the recording begins, so that it begins in the middle of things.
 const WARM_UP: u32 = 400;
 /// Recordings that are generated at a time, until there are encounters enough.
@@ -94,12 +95,15 @@ impl Generated {
         let layout = Layout::draw(site_of(file), seed);
         let mut rng = stream(seed, file, Purpose::Traffic);
         let flow = match layout.control {
-            Control::AllWayStop => rng.random_range(0.12..0.8),
-            _ => rng.random_range(0.08..0.3),
+            Control::AllWayStop => rng.random_range(0.12..0.7),
+            Control::TwoWayStop | Control::Yield => rng.random_range(0.2..0.8),
+            Control::Uncontrolled => rng.random_range(0.08..0.3),
         };
         let tracks = Traffic::new(&layout, flow, rng).record(WARM_UP, STEPS);
         let recording = Recording { file, tracks };
-        let encounters = extract(&layout.site(), None, &recording);
+        // The map is ours and its tests read it; without it nothing would be known of the rights.
+        let map = lanelet::parse(Path::new(&layout.name), &layout.osm()).ok();
+        let encounters = extract(&layout.site(), map.as_ref(), &recording);
         Self {
             layout,
             recording,
@@ -144,10 +148,10 @@ mod tests {
 
     #[test]
     fn every_class_of_site_and_conflict_occurs() {
-        let data = Dataset::synthetic(250, 1);
+        let data = Dataset::synthetic(1000, 1);
         let class = |e: &Encounter| e.id.site[4..9].to_owned();
         let classes: HashSet<String> = data.encounters.iter().map(class).collect();
-        assert_eq!(classes.len(), 6, "{classes:?}");
+        assert_eq!(classes.len(), 9, "{classes:?}");
         let kinds: HashSet<ConflictKind> = data.encounters.iter().map(|e| e.kind).collect();
         assert_eq!(kinds.len(), 3, "{kinds:?}");
         let manoeuvre = |e: &Encounter| e.participants[0].manoeuvre;

@@ -9,6 +9,8 @@ pub(super) enum Control {
     AllWayStop,
     /// The minor road stops and waits for a gap in the major one.
     TwoWayStop,
+    /// The minor road gives way to the major one without a stop.
+    Yield,
     /// Nobody has to stop; who comes from the right goes first.
     Uncontrolled,
 }
@@ -18,6 +20,8 @@ pub(super) enum Control {
 pub(super) struct Class {
     pub(super) control: Control,
     pub(super) arms: usize,
+    /// Whether its map has signs; without them nobody knows who has the right of way.
+    pub(super) signs: bool,
     name: &'static str,
 }
 
@@ -25,28 +29,34 @@ const fn class(control: Control, arms: usize, name: &'static str) -> Class {
     Class {
         control,
         arms,
+        signs: true,
         name,
     }
 }
 
-/// The classes in turn: all-way stops, as the recorded sites are, most often.
-const CLASSES: [Class; 10] = [
+/// The classes in turn: all-way stops most often.
+const CLASSES: [Class; 12] = [
     class(Control::AllWayStop, 3, "T-AWS"),
     class(Control::AllWayStop, 4, "X-AWS"),
     class(Control::TwoWayStop, 3, "T-TWS"),
     class(Control::AllWayStop, 4, "X-AWS"),
-    class(Control::AllWayStop, 3, "T-AWS"),
     class(Control::TwoWayStop, 4, "X-TWS"),
-    class(Control::Uncontrolled, 3, "T-UNC"),
     class(Control::AllWayStop, 3, "T-AWS"),
+    class(Control::Yield, 4, "X-YLD"),
+    class(Control::Uncontrolled, 3, "T-UNC"),
+    Class {
+        signs: false,
+        ..class(Control::AllWayStop, 4, "X-UNK")
+    },
+    class(Control::TwoWayStop, 4, "X-TWS"),
+    class(Control::Yield, 3, "T-YLD"),
     class(Control::Uncontrolled, 4, "X-UNC"),
-    class(Control::AllWayStop, 4, "X-AWS"),
 ];
 const PER_ROUND: u16 = CLASSES.len() as u16;
 /// Recordings of one site.
 const RECORDINGS: u16 = 4;
 
-/// Number of the site of recording `file`: ten recordings in a row are of ten sites.
+/// Number of the site of recording `file`: a round of recordings is of as many sites.
 pub(super) fn site_of(file: u16) -> u16 {
     file % PER_ROUND + PER_ROUND * (file / (PER_ROUND * RECORDINGS))
 }
@@ -96,7 +106,7 @@ mod tests {
     #[test]
     fn every_recording_has_one_site() {
         for file in 0..200 {
-            let sites: Vec<u16> = (0..60)
+            let sites: Vec<u16> = (0..96)
                 .filter(|&n| files_of(n).any(|f| f == file))
                 .collect();
             assert_eq!(sites, [site_of(file)]);

@@ -4,6 +4,7 @@ use super::human::Right;
 use super::layout::{Arm, Layout, Movement};
 use super::plan::Control;
 use crate::encounter::Manoeuvre;
+use crate::lanelet::Sign;
 
 impl Layout {
     /// Whether everybody on this way has to stop at the line.
@@ -13,20 +14,31 @@ impl Layout {
 
     /// Whether everybody on `arm` has to stop at its line.
     pub(super) fn stops(&self, arm: &Arm) -> bool {
+        self.sign(arm) == Some(Sign::Stop)
+    }
+
+    /// The sign at the line of `arm`.
+    pub(super) fn sign(&self, arm: &Arm) -> Option<Sign> {
         match self.control {
-            Control::AllWayStop => true,
-            Control::TwoWayStop => !arm.major,
-            Control::Uncontrolled => false,
+            Control::AllWayStop => Some(Sign::Stop),
+            Control::TwoWayStop => (!arm.major).then_some(Sign::Stop),
+            Control::Yield => (!arm.major).then_some(Sign::Yield),
+            Control::Uncontrolled => None,
         }
+    }
+
+    /// Whether there is a sign on this way.
+    pub(super) fn has_sign(&self, movement: &Movement) -> bool {
+        self.sign(&self.arms[movement.from]).is_some()
     }
 
     /// Who goes first if both come at once: the major road, who comes from the
     /// right, and oncoming traffic before who turns left across it.
     pub(super) fn rule(&self, own: &Movement, other: &Movement) -> Right {
-        let stops = (self.must_stop(own), self.must_stop(other));
-        let theirs = match stops {
-            (true, false) => true,
-            (false, true) => false,
+        let bound = [own, other].map(|m| self.has_sign(m));
+        let theirs = match bound {
+            [true, false] => true,
+            [false, true] => false,
             _ => self.gives_way_aside(own, other),
         };
         if theirs { Right::Theirs } else { Right::Mine }

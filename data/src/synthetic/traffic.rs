@@ -12,10 +12,12 @@ use rand_distr::{Exp1, StandardNormal};
 use rand_pcg::Pcg64;
 
 /// So many vehicles are in the scene at once at most; others wait outside.
-const CAPACITY: usize = 8;
+const CAPACITY: usize = 20;
 /// Within this distance (m) of its line, and slower than [`ARRIVED_SPEED`], a vehicle has arrived.
 const ARRIVED_DISTANCE: f32 = 3.0;
 const ARRIVED_SPEED: f32 = 3.0;
+/// Of two of whom neither gives way the nearer is ahead from this distance (m) to their zone on.
+const NEARER: f32 = 15.0;
 /// Two who arrive within this time (s) came together.
 const TOGETHER: f32 = 0.5;
 
@@ -106,10 +108,15 @@ impl<'a> Traffic<'a> {
     /// A new vehicle at the edge of `arm`, if there is room.
     fn enter(&mut self, arm: usize) -> bool {
         let layout = self.layout;
+        let movement = self.choose(arm);
+        let lane = |movement: usize| {
+            let movement = &layout.movements[movement];
+            (movement.from, movement.lanes[0])
+        };
         let last = self
             .vehicles
             .iter()
-            .filter(|v| layout.movements[v.movement].from == arm)
+            .filter(|v| lane(v.movement) == lane(movement))
             .min_by(|a, b| a.state.s.total_cmp(&b.state.s));
         let room = last.map_or(f32::INFINITY, |last| {
             last.state.s - 0.5 * (last.footprint.length + 5.0)
@@ -119,7 +126,6 @@ impl<'a> Traffic<'a> {
         }
         let ahead = last.map_or(0.0, |last| last.state.v);
         let character = Character::draw(&mut self.rng);
-        let movement = self.choose(arm);
         let wanted = layout.movements[movement].profile.at(0.0).0 * character.pace;
         let spare = (room - character.standstill).max(0.0);
         let safe = libm::sqrtf(ahead * ahead + 2.0 * spare);
@@ -202,7 +208,7 @@ impl<'a> Traffic<'a> {
                 speed: v.state.v,
                 profile: movement.profile.at(v.state.s),
                 crossing_speed: movement.crossing_speed,
-                to_line: v.to_line(movement),
+                to_line: movement.waits - v.state.s - 0.5 * v.footprint.length,
                 must_stop: self.layout.must_stop(movement),
                 leader,
                 rivals: &rivals,
@@ -246,8 +252,8 @@ impl<'a> Traffic<'a> {
     }
 
     fn one_exit(&self, i: usize, j: usize) -> bool {
-        let to = |v: &Vehicle| self.layout.movements[v.movement].to;
-        to(&self.vehicles[i]) == to(&self.vehicles[j])
+        let [own, other] = [i, j].map(|k| &self.layout.movements[self.vehicles[k].movement]);
+        own.one_exit(other)
     }
 
     /// Distance (m) to the end of the route.
@@ -263,16 +269,38 @@ impl<'a> Traffic<'a> {
         else {
             return None;
         };
+        let (before, its_before) = (zone.own.0 - own.state.s, zone.other.0 - other.state.s);
         let rival = Rival {
-            own: (zone.own.0 - own.state.s, zone.own.1 - own.state.s),
-            other: (zone.other.0 - other.state.s, zone.other.1 - other.state.s),
+            own: (before, zone.own.1 - own.state.s),
+            other: (its_before, zone.other.1 - other.state.s),
             speed: other.state.v,
-            ahead: other
-                .entered
-                .is_some_and(|theirs| own.entered.is_none_or(|mine| (theirs, j) < (mine, i))),
+            ahead: self.is_ahead(i, j, before, its_before),
             right: self.right(own, other),
         };
         (rival.own.1 > 0.0 && rival.other.1 > 0.0).then_some(rival)
+    }
+
+    /// Whether vehicle `j` is ahead of `i`, if they have `before` and `its_before` (m) left to their shared zone:
+    /// it is in the zone already, or has entered the intersection earlier. Of two of whom neither gives way to
+    /// the other by the rules the nearer is ahead.
+    fn is_ahead(&self, i: usize, j: usize, before: f32, its_before: f32) -> bool {
+        let (own, other) = (&self.vehicles[i], &self.vehicles[j]);
+        let inside = before > 0.0 && its_before < 0.0;
+        let earlier = match (own.entered, other.entered) {
+            (Some(mine), Some(theirs)) => (theirs, j) < (mine, i),
+            (mine, theirs) => theirs.is_some() && mine.is_none(),
+        };
+        let nearer = its_before < NEARER && (its_before, j) < (before, i);
+        inside || earlier || (nearer && own.entered.is_none() && self.is_open(own, other))
+    }
+
+    /// Whether neither has a sign, and no rule tells one to give way to the other.
+    fn is_open(&self, own: &Vehicle, other: &Vehicle) -> bool {
+        let layout = self.layout;
+        let [mine, theirs] = [own, other].map(|v| &layout.movements[v.movement]);
+        let unsigned = [mine, theirs].iter().all(|m| !layout.has_sign(m));
+        let rules = [layout.rule(mine, theirs), layout.rule(theirs, mine)];
+        unsigned && rules == [Right::Mine; 2]
     }
 
     /// Who of the two goes first.
@@ -297,7 +325,7 @@ fn first_come(own: Option<u32>, other: Option<u32>, rule: Right) -> Right {
         return Right::Mine;
     };
     let Some(own) = own else {
-        return Right::Theirs;
+        return Right::FirstCome(f32::INFINITY);
     };
     let lead = (f64::from(own) - f64::from(other)) as f32 * STEP;
     let tie = match rule {

@@ -159,7 +159,7 @@ fn policy_and_contract_are_replaced_with_the_plan_kept() {
         assert_eq!(cede_policy_check(&world.policy), OK);
         let mut info: cede_policy_info = std::mem::zeroed();
         assert_eq!(cede_policy_describe(&world.policy, &mut info), OK);
-        assert_eq!((info.width, info.features, info.perspective), (64, 3, 1));
+        assert_eq!((info.width, info.features, info.perspective), (48, 4, 1));
     }
 }
 

@@ -195,7 +195,7 @@ fn right(own: Progress, other: &Other) -> Right {
         return Right::Mine;
     };
     let Some(mine) = own.arrived else {
-        return Right::Theirs;
+        return Right::FirstCome(f32::INFINITY);
     };
     let lead = (f64::from(mine) - f64::from(theirs)) as f32 * STEP;
     let tie = if other.has_right { TOGETHER } else { -TOGETHER };

@@ -1,7 +1,7 @@
 use super::search::region;
 use super::*;
 use cede_controller::policy::weights::Draft;
-use cede_controller::{ConflictKind, Mlp, Policy, RightOfWay};
+use cede_controller::{ConflictKind, Control, Mlp, Policy, RightOfWay};
 use cede_formats::property::{Claim, Kind, Right, StateProperty, Variable};
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
@@ -15,11 +15,11 @@ fn file(features: FeatureSet, parameters: &[f32]) -> Vec<u32> {
     let count = features.count();
     let all_scales = [
         0.05, 0.1, 0.05, 0.1, 0.2, 0.2, 0.6, 0.05, 0.05, 1.0, 1.0, 1.0, 1.0, 1.0, 0.1, 0.1, 0.1,
-        0.1,
+        0.1, 0.1, 1.0, 1.0, 1.0,
     ];
     let all_centres = [
         20.0, 5.0, 20.0, 5.0, 4.0, 4.0, 0.8, 15.0, 15.0, 0.5, 0.5, 0.0, 0.0, 0.0, 20.0, 5.0, 20.0,
-        5.0,
+        5.0, 5.0, 0.0, 0.0, 0.0,
     ];
     let draft = Draft {
         features,
@@ -72,6 +72,7 @@ fn property(claim: Claim) -> StateProperty {
         conflicts: vec![Kind::Crossing],
         right_of_way: vec![Right::Other, Right::Unsettled],
         turns: vec![[0.5, 0.0]],
+        controls: vec![[Control::Unknown; 2]],
         claim,
     }
 }
@@ -174,13 +175,12 @@ proptest! {
         low in [-20.0..40.0, 0.0..10.0, -20.0..40.0, 0.0..10.0],
         width in [0.0..10.0, 0.0..3.0, 0.0..10.0, 0.0..3.0],
         at in prop::collection::vec([0.0..=1.0, 0.0..=1.0, 0.0..=1.0, 0.0..=1.0], 8),
-        traffic in any::<bool>(), stopped in any::<bool>(), fine in any::<bool>(),
+        set in prop::sample::select(vec![FeatureSet::Route, FeatureSet::Traffic, FeatureSet::Rights]), stopped in any::<bool>(), fine in any::<bool>(),
     ) {
-        let set = if traffic { FeatureSet::Traffic } else { FeatureSet::Route };
         let file = random_file(set, 5);
         let weights = Weights::parse(&file).expect("a sound file");
         let subject = Subject::new(weights).expect("route features");
-        let setting = Setting { kind: ConflictKind::Merging, right_of_way: RightOfWay::Ego, turns: [0.25, -0.5] };
+        let setting = Setting { kind: ConflictKind::Merging, right_of_way: RightOfWay::Ego, turns: [0.25, -0.5], controls: [Control::Yield, Control::Stop] };
         let single = |x: f64| f64::from(x as f32);
         let factor = if fine { 0.01 } else { 1.0 };
         let lower: Vec<f64> = (0..4).map(|i| if stopped && i % 2 == 1 { 0.0 } else { single(low[i]) }).collect();

@@ -1,6 +1,8 @@
 //! Scenarios as a readable file.
 
-use cede_controller::{Class, ConflictKind, Footprint, Junction, PathId, Point, RightOfWay, Route};
+use cede_controller::{
+    Class, ConflictKind, Control, Footprint, Junction, PathId, Point, RightOfWay, Route,
+};
 use cede_formats::property::{Right, Setting};
 use serde::Deserialize;
 
@@ -32,6 +34,9 @@ pub struct Scenario {
     pub other_acceleration: [f64; 2],
     /// Who may go first.
     pub right_of_way: Right,
+    /// What obliges the ego and the other to give way.
+    #[serde(default)]
+    pub controls: [Control; 2],
     /// Whether the policy is asked, or may propose whatever it likes.
     #[serde(default = "yes")]
     pub policy: bool,
@@ -156,6 +161,7 @@ impl Scenario {
                 Right::Unsettled => RightOfWay::Unsettled,
             },
             turns: [0.0; 2],
+            controls: self.controls,
         }
     }
 }
@@ -177,22 +183,23 @@ pub(super) const HALF: f32 = 255.0;
 /// # Panics
 /// Never: the routes are constants that fit.
 #[must_use]
-pub fn geometry(right_of_way: RightOfWay) -> Crossing {
-    let Some(junction) = crossing(right_of_way) else {
+pub fn geometry(setting: &Setting) -> Crossing {
+    let Some(junction) = crossing(setting) else {
         unreachable!("two straight routes that cross")
     };
     junction
 }
 
-fn crossing(right_of_way: RightOfWay) -> Option<Crossing> {
+fn crossing(setting: &Setting) -> Option<Crossing> {
     let east = Route::<2>::new([Point::new(-HALF, 0.0), Point::new(HALF, 0.0)]).ok()?;
     let north = Route::<2>::new([Point::new(0.0, -HALF), Point::new(0.0, HALF)]).ok()?;
     let mut builder = Crossing::builder();
     builder.tolerance(0.0);
-    for route in [&east, &north] {
-        builder.path(route, Class::Car, Footprint::PAPER).ok()?;
+    for (route, control) in [&east, &north].into_iter().zip(setting.controls) {
+        let path = builder.path(route, Class::Car, Footprint::PAPER).ok()?;
+        builder.control(path, control).ok()?;
     }
-    match right_of_way {
+    match setting.right_of_way {
         RightOfWay::Ego => builder.right_of_way(EGO, OTHER).ok()?,
         RightOfWay::Other => builder.right_of_way(OTHER, EGO).ok()?,
         RightOfWay::Unsettled => {}

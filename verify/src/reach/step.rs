@@ -44,7 +44,7 @@ impl<'a> Loop<'a> {
     #[must_use]
     pub fn new(subject: &'a Subject<'a>, scenario: &Scenario) -> Self {
         let setting = scenario.setting();
-        let junction = geometry(setting.right_of_way);
+        let junction = geometry(&setting);
         let conflict = junction.conflict(EGO, OTHER);
         let [ego_conflict, other_conflict] =
             conflict.map_or([0.0; 2], |c| [c.ego_conflict, c.other_conflict]);

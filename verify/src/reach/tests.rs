@@ -21,6 +21,7 @@ fn scenario() -> Scenario {
         other_speed: [3.0, 5.0],
         other_acceleration: [-1.0, 1.0],
         right_of_way: Right::Unsettled,
+        controls: Default::default(),
         policy: true,
         shield: true,
         claim: Claim::NeverBoth { during: 6.0 },
@@ -33,7 +34,7 @@ fn subject(words: &[u32]) -> Subject<'_> {
 
 /// States of the two (distance, speed) as the real controller drives them.
 fn drive(scenario: &Scenario, from: [f32; 4], random: &mut Pcg64, steps: usize) -> Vec<[f64; 4]> {
-    let junction = geometry(scenario.setting().right_of_way);
+    let junction = geometry(&scenario.setting());
     let conflict = junction.conflict(EGO, OTHER).expect("two paths");
     let policy = Policy::new(embedded::words()).expect("a sound file");
     let drive = Drive::new(policy, Contract::WORST_CASE, Part::Left);

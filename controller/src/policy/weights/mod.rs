@@ -6,7 +6,7 @@
 //! |---|---|
 //! | 1 | the letters `CEDE` |
 //! | 1 | version of the format, 2 |
-//! | 1 | [`FeatureSet`]: 0 raw, 1 route, 2 traffic, 3 scene |
+//! | 1 | [`FeatureSet`]: 0 raw, 1 route, 2 traffic, 3 scene, 4 rights |
 //! | 1 | [`Perspective`]: 0 joint, 1 ego |
 //! | 3 | sizes: inputs I, width H of the hidden layers, outputs, 4 |
 //! | 8 | provenance: a SHA-256 of what the network was made from |
