@@ -1,6 +1,6 @@
 //! Judges every driver on every split: the rows of the table, with progress on stderr.
 
-use crate::contract::Named;
+use crate::contract::{self, Named};
 use crate::drivers::Contender;
 use crate::failure::Failure;
 use crate::interrupt;
@@ -68,14 +68,17 @@ impl ShieldName {
     /// The shields of a [`Plan`], with `contract`; the default is the worst case.
     ///
     /// # Errors
-    /// There is a contract but no shield.
-    pub(crate) fn shields(self, contract: Option<Named>) -> Result<Vec<Option<Contract>>, Failure> {
-        let assumed = Some(contract.unwrap_or_default().0);
+    /// There is a contract but no shield, or its file is not a contract.
+    pub(crate) fn shields(
+        self,
+        contract: Option<&Named>,
+    ) -> Result<Vec<Option<Contract>>, Failure> {
+        let assumed = || contract::or_worst_case(contract).map(Some);
         match self {
             Self::Off if contract.is_some() => Err(Failure::ignored("--contract", "--shield off")),
             Self::Off => Ok(vec![None]),
-            Self::On => Ok(vec![assumed]),
-            Self::Both => Ok(vec![None, assumed]),
+            Self::On => Ok(vec![assumed()?]),
+            Self::Both => Ok(vec![None, assumed()?]),
         }
     }
 }

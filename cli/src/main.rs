@@ -7,6 +7,7 @@ mod command;
 mod contract;
 mod drivers;
 mod failure;
+mod input;
 mod interrupt;
 mod judge;
 mod left_out;

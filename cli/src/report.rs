@@ -44,8 +44,9 @@ const SCRIPT: &str = concat!(
 
 /// The command line.
 pub(crate) fn command() -> String {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    format!("cede {}", arguments.join(" "))
+    let arguments = std::env::args_os().skip(1);
+    let words = arguments.map(|argument| format!(" {}", argument.to_string_lossy()));
+    format!("cede{}", words.collect::<String>())
 }
 
 /// Collects the content of the page, row by row.

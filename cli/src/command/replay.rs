@@ -67,7 +67,7 @@ impl FromStr for TrackPair {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let shields = args.shield.shields(args.contract)?;
+    let shields = args.shield.shields(args.contract.as_ref())?;
     let contenders = args.driver.contenders(args.weights.as_deref())?;
     let dataset = Dataset::load(&args.file, &args.site)?;
     let encounter = args.choose(&dataset)?;

@@ -1,7 +1,7 @@
 //! `cede data synthesize`: synthetic recordings as files.
 
 use crate::failure::Failure;
-use crate::source::at_least_one;
+use crate::source::some_encounters;
 use std::path::PathBuf;
 
 /// Options of `cede data synthesize`.
@@ -11,7 +11,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// At least so many encounters (whole recordings are written)
-    #[arg(long, default_value_t = 1000, value_name = "N", value_parser = at_least_one())]
+    #[arg(long, default_value_t = 1000, value_name = "N", value_parser = some_encounters())]
     encounters: usize,
     /// The same seed gives the same files
     #[arg(long, default_value_t = 0, value_name = "S")]

@@ -1,6 +1,6 @@
 //! `cede verify beyond`: encounters in which one number of the contract does not hold.
 
-use crate::contract::Named;
+use crate::contract::{self, Named};
 use crate::failure::Failure;
 use crate::threads::Threads;
 use cede_sim::campaign::beyond::{Count, Guard, ROWS, Row, Temper, beyond};
@@ -28,7 +28,7 @@ pub(crate) struct Beyond {
     #[arg(long, default_value_t = 2000, value_parser = clap::value_parser!(u64).range(1..))]
     encounters: u64,
     /// Seed of the first encounter.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(..=u64::MAX / 2))]
     seed: u64,
     #[command(flatten)]
     threads: Threads,
@@ -49,7 +49,7 @@ impl Beyond {
     /// Runs the command.
     pub(crate) fn run(self) -> Result<(), Failure> {
         self.threads.start()?;
-        let contract = self.contract.unwrap_or_default().0;
+        let contract = contract::or_worst_case(self.contract.as_ref())?;
         let mut lines = Vec::new();
         for row in ROWS {
             eprintln!("{} …", row.name);

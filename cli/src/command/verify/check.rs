@@ -1,10 +1,9 @@
 //! `cede verify check`.
 
-use super::network::bytes;
 use crate::failure::Failure;
+use crate::input::{self, unusable};
 use cede_nnv_check::Certificate;
 use clap::Args;
-use miette::{IntoDiagnostic, WrapErr};
 use std::io::Write as _;
 use std::path::PathBuf;
 
@@ -13,6 +12,9 @@ const HELP: &str = "\
 Exit code 0 if the certificate is a proof, 1 if it is not. The certificate names the network and the property by
 path, relative to the current folder, and by hash. --onnx and --vnnlib replace the paths; files of other content are
 refused. What has been proved of what is printed.";
+
+/// What the file should be.
+const CERTIFICATE: &str = "a certificate that `cede verify network --certificate FILE` wrote";
 
 /// Options of `cede verify check`.
 #[derive(Args)]
@@ -32,17 +34,15 @@ pub(crate) struct Check {
 impl Check {
     /// Runs the command.
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let text = std::fs::read_to_string(&self.certificate).into_diagnostic();
-        let certificate = text.and_then(|text| Certificate::from_text(&text).into_diagnostic());
-        let certificate = certificate
-            .wrap_err_with(|| format!("cannot use {}", self.certificate.display()))
-            .map_err(Failure::Input)?;
+        let text = input::text(&self.certificate, CERTIFICATE)?;
+        let certificate = Certificate::from_text(&text)
+            .map_err(|error| unusable(&self.certificate, error, CERTIFICATE))?;
         let onnx = self.onnx.unwrap_or_else(|| certificate.onnx.path.clone());
         let vnnlib = self
             .vnnlib
             .unwrap_or_else(|| certificate.vnnlib.path.clone());
-        let model = bytes(&onnx, "the network of the certificate")?;
-        let text = bytes(&vnnlib, "the property of the certificate")?;
+        let model = input::bytes(&onnx, "the network of the certificate with --onnx")?;
+        let text = input::bytes(&vnnlib, "the property of the certificate with --vnnlib")?;
         let proved = certificate.check(&model, &text);
         let mut proved =
             proved.map_err(|e| Failure::Check(format!("{}: {e}", self.certificate.display())))?;

@@ -1,6 +1,6 @@
 //! `cede verify margins`.
 
-use crate::contract::Named;
+use crate::contract::{self, Named};
 use crate::failure::Failure;
 use crate::threads::Threads;
 use cede_controller::Contract;
@@ -61,9 +61,10 @@ struct MarginRow {
 impl Margins {
     /// Runs the command.
     pub(crate) fn run(self) -> Result<(), Failure> {
+        let contract = contract::or_worst_case(self.contract.as_ref())?;
         self.threads.start()?;
-        let short = shortfall(&self.contract.unwrap_or_default().0);
-        let rows = self.rows();
+        let short = shortfall(&contract);
+        let rows = self.rows(contract);
         // A closed pipe (`| head`) is not an error.
         let _ = writeln!(std::io::stdout(), "{}", self.told(&rows, short));
         let mut open: Vec<String> = rows
@@ -81,9 +82,9 @@ impl Margins {
         }
     }
 
-    fn rows(&self) -> Vec<MarginRow> {
+    fn rows(&self, contract: Contract) -> Vec<MarginRow> {
         let contracts = match self.contract {
-            Some(Named(contract)) => vec![("as given", contract)],
+            Some(_) => vec![("as given", contract)],
             None => CONTRACTS.to_vec(),
         };
         let all = contracts

@@ -1,13 +1,12 @@
 //! `cede verify reach`.
 
-use super::policy::{named, policy_words};
+use super::policy::{policy_words, subject};
+use super::seconds;
 use crate::failure::Failure;
+use crate::input::{self, unusable};
 use crate::threads::Threads;
-use cede_controller::Weights;
-use cede_verify::policy::Subject;
 use cede_verify::reach::{Finding, Scenario, Scenarios, Settled, settle};
 use clap::Args;
-use miette::{IntoDiagnostic, miette};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -18,6 +17,9 @@ Starts from all states of a region. Exit code 1 if a scenario's claim is not pro
 
 /// The claims about the embedded policy with its shield.
 const SCENARIOS: &str = include_str!("../../../../docs/safety/reach.toml");
+
+/// What the file should be.
+const SCENARIO: &str = "scenarios as docs/safety/reach.toml has them";
 
 /// Options of `cede verify reach`.
 #[derive(Args)]
@@ -30,7 +32,7 @@ pub(crate) struct Reach {
     #[arg(long, value_name = "FILE")]
     scenarios: Option<PathBuf>,
     /// Time limit per scenario in seconds.
-    #[arg(long, value_name = "SECONDS", default_value_t = 120)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 120, value_parser = seconds())]
     timeout: u64,
     #[command(flatten)]
     threads: Threads,
@@ -43,8 +45,7 @@ impl Reach {
     /// Runs the command.
     pub(crate) fn run(self) -> Result<(), Failure> {
         let (place, words) = policy_words(self.weights.as_deref())?;
-        let weights = named(place, Weights::parse(&words).map_err(|e| miette!("{e}")))?;
-        let subject = named(place, Subject::new(weights).into_diagnostic())?;
+        let subject = subject(place, &words)?;
         let scenarios = self.read()?.scenario;
         self.threads.start()?;
         let limit = Duration::from_secs(self.timeout);
@@ -69,14 +70,9 @@ impl Reach {
 
     fn read(&self) -> Result<Scenarios, Failure> {
         let Some(path) = &self.scenarios else {
-            let scenarios = Scenarios::read(SCENARIOS).into_diagnostic();
-            return named(Path::new("docs/safety/reach.toml"), scenarios);
+            return scenarios(Path::new("docs/safety/reach.toml"), SCENARIOS);
         };
-        let text = std::fs::read_to_string(path).into_diagnostic();
-        named(
-            path,
-            text.and_then(|text| Scenarios::read(&text).into_diagnostic()),
-        )
+        scenarios(path, &input::text(path, SCENARIO)?)
     }
 
     fn told(&self, settled: &[(Scenario, Settled)]) -> String {
@@ -86,6 +82,10 @@ impl Reach {
         }
         settled.iter().map(text).collect::<Vec<_>>().join("\n")
     }
+}
+
+fn scenarios(path: &Path, text: &str) -> Result<Scenarios, Failure> {
+    Scenarios::read(text).map_err(|error| unusable(path, error, SCENARIO))
 }
 
 fn word(finding: &Finding) -> &'static str {

@@ -1,12 +1,12 @@
 //! `cede verify shield`: the share of recorded steps that the shield accepts.
 
-use crate::contract::Named;
+use crate::contract::{self, Named};
 use crate::failure::Failure;
 use crate::left_out;
 use crate::report::{Report, command};
 use crate::source::not_empty;
 use cede_controller::{ConflictKind, Contract, ContractBuilder};
-use cede_data::{Dataset, Encounter};
+use cede_data::{Dataset, Encounter, output};
 use cede_sim::transparency::{Swept, Transparency, sweep, transparency};
 use clap::Args;
 use std::io::{self, Write};
@@ -41,6 +41,11 @@ pub(crate) struct Shield {
 impl Shield {
     /// Runs the command.
     pub(crate) fn run(self) -> Result<(), Failure> {
+        let contract = contract::or_worst_case(self.contract.as_ref())?;
+        let outputs = [&self.sweep, &self.report].into_iter().flatten();
+        outputs
+            .map(|file| output::check(file))
+            .collect::<Result<(), _>>()?;
         let data = Dataset::load(&self.data, &self.site)?;
         not_empty(&data)?;
         let encounters: Vec<&Encounter> = data.encounters.iter().collect();
@@ -48,7 +53,7 @@ impl Shield {
         println!("contract          kind       role    steps  accepted");
         let mut worst = Vec::new();
         let contracts = match self.contract {
-            Some(Named(contract)) => vec![("as given", contract)],
+            Some(_) => vec![("as given", contract)],
             None => contracts().to_vec(),
         };
         for (name, contract) in contracts {
@@ -66,13 +71,13 @@ impl Shield {
             }
         }
         if let Some(file) = &self.sweep {
-            let rows = sweep(&encounters, self.contract.unwrap_or_default().0)
+            let rows = sweep(&encounters, contract)
                 .map_err(|error| Failure::input(error, "report this as a bug"))?;
-            cede_data::output::write(file, |out| csv(out, &rows))?;
+            output::write(file, |out| csv(out, &rows))?;
         }
         if let Some(file) = &self.report {
             let mut report = Report::showing(Vec::new(), &data, &command());
-            report.sweep(&data, self.contract.unwrap_or_default().0)?;
+            report.sweep(&data, contract)?;
             report.write(file)?;
         }
         judge(&worst)
