@@ -13,7 +13,13 @@ const LARGEST: u64 = 1 << 30;
 /// # Errors
 /// It cannot be read, or is larger than [`LARGEST`].
 pub(crate) fn bytes(path: &Path, what: &str) -> Result<Vec<u8>, Failure> {
-    read(path).map_err(|error| unusable(path, error, what))
+    read(path).map_err(|error| {
+        let path = path.display();
+        Failure::input(
+            format!("cannot read {path}: {error}"),
+            format!("give {what}"),
+        )
+    })
 }
 
 /// The text of the file at `path`, which should be `what`.

@@ -33,7 +33,7 @@ impl Data {
 /// Lists the files that were not read on stderr.
 fn name_passed_over(dataset: &Dataset) {
     for path in &dataset.passed_over {
-        eprintln!(
+        note!(
             "skipped, because it contains pedestrians: {}",
             path.display()
         );

@@ -52,7 +52,7 @@ impl Beyond {
         let contract = contract::or_worst_case(self.contract.as_ref())?;
         let mut lines = Vec::new();
         for row in ROWS {
-            eprintln!("{} …", row.name);
+            note!("{} …", row.name);
             for temper in [Temper::Hostile, Temper::Gentle] {
                 let counts = Guard::ALL.map(|guard| {
                     let driven = (guard, temper);

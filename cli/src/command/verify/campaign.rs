@@ -22,6 +22,9 @@ pub(crate) struct Campaign {
     /// Seed of the first scenario.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(..=u64::MAX / 2))]
     seed: u64,
+    /// Print one JSON object instead.
+    #[arg(long)]
+    json: bool,
 }
 
 impl Campaign {
@@ -36,15 +39,15 @@ impl Campaign {
                 seed = seed.saturating_add(BATCH);
             }
         }
-        println!(
-            "{:26} {:>9} {:>10} {:>9} {:>11} {:>13} {:>8}",
-            "set-up", "scenarios", "steps", "overlaps", "unverified", "interventions", "cleared"
-        );
-        for ((name, _), tally) in setups.iter().zip(&tallies) {
-            print(name, tally);
-        }
         let all = tallies.into_iter().fold(Tally::default(), Tally::plus);
-        print("all", &all);
+        let names = setups.iter().map(|(name, _)| *name).chain(["all"]);
+        let rows: Vec<_> = names.zip(tallies.into_iter().chain([all])).collect();
+        if self.json {
+            let rows: Vec<_> = rows.iter().map(|(name, tally)| json(name, tally)).collect();
+            println!("{}", serde_json::json!({ "seed": self.seed, "rows": rows }));
+        } else {
+            print(&rows);
+        }
         match all.overlaps + all.unverified + all.false_breaches {
             0 => Ok(()),
             _ => Err(Failure::Check(format!(
@@ -55,17 +58,31 @@ impl Campaign {
     }
 }
 
-fn print(name: &str, tally: &Tally) {
-    let Tally {
-        scenarios,
-        steps,
-        overlaps,
-        unverified,
-        interventions,
-        cleared,
-        ..
-    } = tally;
+fn print(rows: &[(&str, Tally)]) {
     println!(
-        "{name:26} {scenarios:>9} {steps:>10} {overlaps:>9} {unverified:>11} {interventions:>13} {cleared:>8}"
+        "{:26} {:>9} {:>10} {:>9} {:>11} {:>13} {:>8}",
+        "set-up", "scenarios", "steps", "overlaps", "unverified", "interventions", "cleared"
     );
+    for (name, tally) in rows {
+        let Tally {
+            scenarios,
+            steps,
+            overlaps,
+            unverified,
+            interventions,
+            cleared,
+            ..
+        } = tally;
+        println!(
+            "{name:26} {scenarios:>9} {steps:>10} {overlaps:>9} {unverified:>11} {interventions:>13} {cleared:>8}"
+        );
+    }
+}
+
+fn json(name: &str, tally: &Tally) -> serde_json::Value {
+    serde_json::json!({
+        "setup": name, "scenarios": tally.scenarios, "steps": tally.steps, "overlaps": tally.overlaps,
+        "unverified": tally.unverified, "false_breaches": tally.false_breaches,
+        "interventions": tally.interventions, "cleared": tally.cleared,
+    })
 }

@@ -2,9 +2,8 @@
 
 use crate::failure::Failure;
 use crate::input::{self, unusable};
-use cede_nnv_check::Certificate;
+use cede_nnv_check::{Certificate, Proved, Source};
 use clap::Args;
-use std::io::Write as _;
 use std::path::PathBuf;
 
 /// The text below the options in `cede help verify check`.
@@ -29,6 +28,9 @@ pub(crate) struct Check {
     /// The property, if its path has changed.
     #[arg(long, value_name = "FILE")]
     vnnlib: Option<PathBuf>,
+    /// Print one JSON object instead.
+    #[arg(long)]
+    json: bool,
 }
 
 impl Check {
@@ -47,8 +49,22 @@ impl Check {
         let mut proved =
             proved.map_err(|e| Failure::Check(format!("{}: {e}", self.certificate.display())))?;
         (proved.onnx.path, proved.vnnlib.path) = (onnx, vnnlib);
-        // A closed pipe (`| head`) is not an error.
-        let _ = writeln!(std::io::stdout(), "{proved}");
+        if self.json {
+            println!("{}", json(&proved));
+        } else {
+            println!("{proved}");
+        }
         Ok(())
     }
+}
+
+fn json(proved: &Proved) -> serde_json::Value {
+    let [inputs, outputs, layers, weights] = proved.network;
+    let file =
+        |source: &Source| serde_json::json!({ "path": source.path, "sha256": source.sha256 });
+    serde_json::json!({
+        "verdict": "proved", "semantics": "real", "onnx": file(&proved.onnx), "inputs": inputs, "outputs": outputs,
+        "layers": layers, "weights": weights, "vnnlib": file(&proved.vnnlib), "boxes": proved.boxes,
+        "unsafe_sets": proved.unsafe_sets, "program": proved.program, "regions": proved.regions,
+    })
 }

@@ -91,7 +91,7 @@ impl Margins {
             .iter()
             .flat_map(|contract| Predicate::ALL.map(|predicate| (contract, predicate)));
         all.map(|((name, contract), predicate)| {
-            eprintln!("{}, {name} …", predicate.name());
+            note!("{}, {name} …", predicate.name());
             MarginRow {
                 contract: name,
                 predicate,
