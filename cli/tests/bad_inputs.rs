@@ -60,6 +60,10 @@ const CASES: &[Case] = &[
     ("data extract --data folder --site all", 3, "no folder with recorded tracks here"),
     ("data synthesize --out empty.csv", 3, "empty.csv is a file, not a folder"),
     ("data synthesize --out made --encounters 1e3", 2, "invalid digit"),
+    ("data new-site --data nowhere --out site.toml", 3, "nowhere: No such file"),
+    ("data new-site --data alone.csv --out site.toml", 3, "the tracks show no arms of a junction"),
+    ("data new-site --data alone.csv --out site.txt", 2, "has to end in .toml"),
+    ("data new-site --data alone.csv --out key.toml", 3, "key.toml exists"),
     // Evaluation.
     ("evaluate", 2, "--data <DIR|synthetic>"),
     ("evaluate --data synthetic --driver fast", 2, "no driver is called `fast`; there are: all, replay"),

@@ -37,18 +37,20 @@ impl Check {
     /// Runs the command.
     pub(crate) fn run(self) -> Result<(), Failure> {
         let text = input::text(&self.certificate, CERTIFICATE)?;
-        let certificate = Certificate::from_text(&text)
+        let mut certificate = Certificate::from_text(&text)
             .map_err(|error| unusable(&self.certificate, error, CERTIFICATE))?;
-        let onnx = self.onnx.unwrap_or_else(|| certificate.onnx.path.clone());
-        let vnnlib = self
-            .vnnlib
-            .unwrap_or_else(|| certificate.vnnlib.path.clone());
-        let model = input::bytes(&onnx, "the network of the certificate with --onnx")?;
-        let text = input::bytes(&vnnlib, "the property of the certificate with --vnnlib")?;
+        for (file, given) in [
+            (&mut certificate.onnx, self.onnx),
+            (&mut certificate.vnnlib, self.vnnlib),
+        ] {
+            file.path = given.unwrap_or_else(|| file.path.clone());
+        }
+        let (onnx, vnnlib) = (&certificate.onnx.path, &certificate.vnnlib.path);
+        let model = input::bytes(onnx, "the network of the certificate with --onnx")?;
+        let text = input::bytes(vnnlib, "the property of the certificate with --vnnlib")?;
         let proved = certificate.check(&model, &text);
-        let mut proved =
+        let proved =
             proved.map_err(|e| Failure::Check(format!("{}: {e}", self.certificate.display())))?;
-        (proved.onnx.path, proved.vnnlib.path) = (onnx, vnnlib);
         if self.json {
             println!("{}", json(&proved));
         } else {

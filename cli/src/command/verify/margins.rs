@@ -78,7 +78,12 @@ impl Margins {
         if open.is_empty() {
             Ok(())
         } else {
-            Err(Failure::Check(format!("not shown: {}", open.join("; "))))
+            let mend =
+                "more --boxes sharpen the bounds, a larger `slack` of the contract covers them";
+            Err(Failure::Check(format!(
+                "not shown: {}; {mend}",
+                open.join("; ")
+            )))
         }
     }
 
