@@ -12,7 +12,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// The longest that a case may take, on a busy machine.
-const DEADLINE: Duration = Duration::from_secs(20);
+const DEADLINE: Duration = Duration::from_secs(60);
 
 /// A command line, the exit code, and what standard error contains. Words are separated by blanks; `''` is an
 /// empty word, and `\xff` in a word is a byte that is no UTF-8.

@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::source::some_encounters;
+use cede_data::output;
 use cede_data::synthetic::WrittenSite;
 use std::path::PathBuf;
 
@@ -24,6 +25,7 @@ pub(crate) struct Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    output::check(&args.out.join("SITE.toml"))?;
     let sites = cede_data::synthetic::write(&args.out, args.encounters, args.seed)?;
     if args.json {
         let json = |site: &WrittenSite| {

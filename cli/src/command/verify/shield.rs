@@ -48,10 +48,8 @@ impl Shield {
     /// Runs the command.
     pub(crate) fn run(self) -> Result<(), Failure> {
         let contract = contract::or_worst_case(self.contract.as_ref())?;
-        let outputs = [&self.sweep, &self.report].into_iter().flatten();
-        outputs
-            .map(|file| output::check(file))
-            .collect::<Result<(), _>>()?;
+        let mut outputs = [&self.sweep, &self.report].into_iter().flatten();
+        outputs.try_for_each(|file| output::check(file))?;
         let data = Dataset::load(&self.data, &self.site)?;
         not_empty(&data)?;
         let encounters: Vec<&Encounter> = data.encounters.iter().collect();
