@@ -65,7 +65,7 @@ function saveButtons(figure) {
   const name = told.toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "").slice(0, 60);
   const png = async () => {
     const canvas = map ?? await painted(standalone(chart(), title));
-    canvas.toBlob((blob) => download(blob, `cede-${name}.png`));
+    download(await new Promise((done) => canvas.toBlob(done)), `cede-${name}.png`);
   };
   const ways = map ? { PNG: png } : { SVG: () => download(asFile(standalone(chart(), title)), `cede-${name}.svg`), PNG: png };
   const buttons = document.createElement("span");
