@@ -1,10 +1,12 @@
 //! The subcommands, one module each.
 
+mod completions;
 mod data;
 mod demo;
 mod evaluate;
 mod export;
 mod import;
+mod man;
 mod play;
 mod replay;
 mod reproduce;
@@ -40,17 +42,23 @@ pub(crate) enum Command {
     /// Prove properties, check proofs, and collect all evidence
     #[command(subcommand)]
     Verify(verify::Verify),
+    /// Print the completions of a shell
+    Completions(completions::Args),
+    /// Write the manual pages
+    Man(man::Args),
 }
 
 impl Command {
     /// Runs the command.
     pub(crate) fn run(self) -> Result<(), Failure> {
         match self {
+            Self::Completions(args) => completions::run(&args),
             Self::Data(data) => data.run(),
             Self::Demo => demo::run(),
             Self::Evaluate(args) => evaluate::run(&args),
             Self::Export(args) => export::run(&args),
             Self::Import(args) => import::run(&args),
+            Self::Man(args) => man::run(&args),
             Self::Play(args) => play::run(&args),
             Self::Replay(args) => replay::run(&args),
             Self::Train(args) => train::run(&args),

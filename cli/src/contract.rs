@@ -1,8 +1,10 @@
 //! The contract that the user names: one with a name, or one in a TOML file.
 
+use crate::failure::Failure;
+use crate::input;
 use cede_controller::Contract;
 use clap::builder::{PossibleValue, TypedValueParser, ValueParserFactory};
-use std::path::Path;
+use std::path::PathBuf;
 
 /// The contracts with a name, and what they say.
 const NAMED: [(&str, Contract, &str); 2] = [
@@ -38,13 +40,37 @@ const FILES: [(&str, &str, &str); 3] = [
 ];
 
 /// A contract that was named on the command line.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Named(pub(crate) Contract);
+#[derive(Clone, Debug)]
+pub(crate) enum Named {
+    Known(Contract),
+    File(PathBuf),
+}
 
-impl Default for Named {
-    fn default() -> Self {
-        Self(Contract::WORST_CASE)
+impl Named {
+    /// The contract.
+    ///
+    /// # Errors
+    /// The file is not a contract.
+    pub(crate) fn read(&self) -> Result<Contract, Failure> {
+        match self {
+            Self::Known(contract) => Ok(*contract),
+            Self::File(path) => {
+                let contract = toml::from_str(&input::text(path, WHAT)?);
+                contract.map_err(|error| input::unusable(path, error, WHAT))
+            }
+        }
     }
+}
+
+/// What a contract's file should be.
+const WHAT: &str = "the numbers of a contract, as contracts/worst-case.toml has them";
+
+/// The contract that was named, or else the worst case.
+///
+/// # Errors
+/// The file is not a contract.
+pub(crate) fn or_worst_case(named: Option<&Named>) -> Result<Contract, Failure> {
+    named.map_or(Ok(Contract::WORST_CASE), Named::read)
 }
 
 /// Reads [`Named`] from a name or the path of a file.
@@ -68,9 +94,8 @@ impl TypedValueParser for Parser {
         argument: Option<&clap::Arg>,
         value: &std::ffi::OsStr,
     ) -> Result<Named, clap::Error> {
-        let read = |text: &str| read(text);
         clap::builder::StringValueParser::new()
-            .try_map(move |text| read(&text))
+            .try_map(|text| named(&text))
             .parse_ref(command, argument, value)
     }
 
@@ -84,41 +109,45 @@ impl TypedValueParser for Parser {
     }
 }
 
-/// A contract by its name, or from a file.
-fn read(text: &str) -> Result<Named, String> {
+/// A contract by its name, or a file's path.
+fn named(text: &str) -> Result<Named, String> {
     if let Some((_, contract, _)) = NAMED.iter().find(|(name, ..)| *name == text) {
-        return Ok(Named(*contract));
+        return Ok(Named::Known(*contract));
     }
-    let parse = |numbers: &str| {
-        let read = toml::from_str(numbers).map(Named);
-        read.map_err(|error| error.to_string())
-    };
     if let Some((_, numbers, _)) = FILES.iter().find(|(name, ..)| *name == text) {
-        return parse(numbers);
+        let known = toml::from_str(numbers).map(Named::Known);
+        return known.map_err(|error| error.to_string());
     }
-    let path = Path::new(text);
+    let path = PathBuf::from(text);
     if path.extension().is_none() {
-        let named = NAMED.iter().map(|(name, ..)| *name);
-        let names: Vec<_> = named.chain(FILES.iter().map(|(name, ..)| *name)).collect();
+        let known = NAMED.iter().map(|(name, ..)| *name);
+        let names: Vec<_> = known.chain(FILES.iter().map(|(name, ..)| *name)).collect();
         let names = names.join(", ");
         return Err(format!("no contract has this name: {names}, or FILE.toml"));
     }
-    parse(&std::fs::read_to_string(path).map_err(|error| error.to_string())?)
+    Ok(Named::File(path))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn read(text: &str) -> Result<Contract, String> {
+        named(text)?.read().map_err(|failure| match failure {
+            Failure::Input(report) => report.to_string(),
+            _ => unreachable!("reading fails for its input alone"),
+        })
+    }
+
     #[test]
     fn the_files_say_what_the_named_contracts_are() {
         for (name, contract, _) in NAMED {
             let file = format!("{}/../contracts/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-            assert_eq!(read(&file).unwrap().0, contract, "{name}");
-            assert_eq!(read(name).unwrap().0, contract);
+            assert_eq!(read(&file).unwrap(), contract, "{name}");
+            assert_eq!(read(name).unwrap(), contract);
         }
         for (name, _, _) in FILES {
-            assert!(read(name).unwrap().0.ego().lag > 0.0, "{name}");
+            assert!(read(name).unwrap().ego().lag > 0.0, "{name}");
         }
     }
 

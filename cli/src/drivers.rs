@@ -1,6 +1,8 @@
 //! The drivers that can be named on the command line.
 
 use crate::failure::Failure;
+use crate::input;
+use cede_controller::policy::weights;
 use cede_controller::{Contract, Policy};
 use cede_data::Encounter;
 use cede_formats::cede;
@@ -66,17 +68,20 @@ impl Drivers {
     }
 }
 
+/// What a weights file should be.
+pub(crate) const WEIGHTS: &str = "a .cede file as `cede train` writes it";
+
 /// The policy of a weights file, or the embedded one.
 ///
 /// # Errors
 /// The file cannot be used.
-pub(crate) fn policy(weights: Option<&Path>) -> Result<Policy<'static>, Failure> {
-    let Some(file) = weights else {
+pub(crate) fn policy(file: Option<&Path>) -> Result<Policy<'static>, Failure> {
+    let Some(file) = file else {
         let words = cede_controller::policy::embedded::words();
         return Policy::new(words).map_err(|error| Failure::input(error, "report this as a bug"));
     };
-    cede::load(file)
-        .map_err(|error| Failure::input(error, "give a .cede file as `cede train` writes it"))
+    let words: Vec<u32> = weights::words(&input::bytes(file, WEIGHTS)?).collect();
+    cede::keep(&words).map_err(|error| input::unusable(file, error, WEIGHTS))
 }
 
 impl FromStr for Drivers {

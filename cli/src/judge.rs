@@ -1,10 +1,11 @@
 //! Judges every driver on every split: the rows of the table, with progress on stderr.
 
-use crate::contract::Named;
+use crate::contract::{self, Named};
 use crate::drivers::Contender;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::left_out::LeftOut;
+use crate::progress;
 use cede_controller::Contract;
 use cede_data::Dataset;
 use cede_sim::driver::{Baseline, FitError};
@@ -13,7 +14,6 @@ use cede_sim::evaluate::{
     Drive, Evaluation, Label, Mode, Protocol, Round, Selection, TableRow, evaluate,
 };
 use clap::ValueEnum;
-use indicatif::{ProgressBar, ProgressStyle};
 
 /// What is judged, and how.
 pub(crate) struct Plan {
@@ -68,14 +68,17 @@ impl ShieldName {
     /// The shields of a [`Plan`], with `contract`; the default is the worst case.
     ///
     /// # Errors
-    /// There is a contract but no shield.
-    pub(crate) fn shields(self, contract: Option<Named>) -> Result<Vec<Option<Contract>>, Failure> {
-        let assumed = Some(contract.unwrap_or_default().0);
+    /// There is a contract but no shield, or its file is not a contract.
+    pub(crate) fn shields(
+        self,
+        contract: Option<&Named>,
+    ) -> Result<Vec<Option<Contract>>, Failure> {
+        let assumed = || contract::or_worst_case(contract).map(Some);
         match self {
             Self::Off if contract.is_some() => Err(Failure::ignored("--contract", "--shield off")),
             Self::Off => Ok(vec![None]),
-            Self::On => Ok(vec![assumed]),
-            Self::Both => Ok(vec![None, assumed]),
+            Self::On => Ok(vec![assumed()?]),
+            Self::Both => Ok(vec![None, assumed()?]),
         }
     }
 }
@@ -100,7 +103,8 @@ impl Plan {
         mut each: impl FnMut(&TableRow, &[Drive<'_>]),
     ) -> Result<Vec<TableRow>, Failure> {
         let blocks = self.selections.len() * self.shields.len();
-        let bar = progress(blocks * self.contenders.len());
+        let rows = blocks * self.contenders.len();
+        let bar = progress::bar(rows as u64, "{bar:30} {pos}/{len} {msg}");
         let mut rows = Vec::new();
         let mut left_out = LeftOut::default();
         for &selection in &self.selections {
@@ -126,7 +130,7 @@ impl Plan {
                         rows.push(row);
                     }
                     Err(error) if self.lenient => {
-                        bar.suspend(|| eprintln!("left out of {selection}: {error}"));
+                        bar.suspend(|| note!("left out of {selection}: {error}"));
                     }
                     Err(error) => {
                         return Err(Failure::input(
@@ -194,11 +198,4 @@ fn product<'a, A, B>(outer: &'a [A], inner: &'a [B]) -> impl Iterator<Item = (&'
     outer
         .iter()
         .flat_map(move |a| inner.iter().map(move |b| (a, b)))
-}
-
-/// A progress bar on stderr; hidden if stderr is not a terminal.
-fn progress(rows: usize) -> ProgressBar {
-    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}");
-    let bar = ProgressBar::new(rows as u64);
-    style.map_or_else(|_| bar.clone(), |style| bar.clone().with_style(style))
 }

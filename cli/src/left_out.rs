@@ -14,7 +14,7 @@ impl LeftOut {
     pub(crate) fn drives<'d>(&mut self, evaluation: Evaluation<'d>) -> Vec<Drive<'d>> {
         for refused in &evaluation.refused {
             if self.0.insert(refused.encounter.id.clone()) {
-                eprintln!("left out: {}", words(refused));
+                note!("left out: {}", words(refused));
             }
         }
         evaluation.drives
@@ -25,7 +25,7 @@ impl LeftOut {
 pub(crate) fn tell(encounters: &[&Encounter]) {
     for &encounter in encounters {
         if let Err(why) = Meeting::new(encounter) {
-            eprintln!("left out: {}", words(&Refused { encounter, why }));
+            note!("left out: {}", words(&Refused { encounter, why }));
         }
     }
 }

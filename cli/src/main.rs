@@ -3,15 +3,20 @@
 #[macro_use]
 mod stdout;
 
+mod arguments;
 mod child;
 mod command;
+mod config;
 mod contract;
 mod drivers;
 mod failure;
+mod guide;
+mod input;
 mod interrupt;
 mod judge;
 mod left_out;
 mod plural;
+mod progress;
 mod report;
 mod safety;
 mod scene;
@@ -22,25 +27,15 @@ mod threads;
 mod training;
 mod verdict;
 
-use clap::Parser;
 use std::process::ExitCode;
-
-/// Decides how a vehicle crosses an unsignalized intersection.
-///
-/// Without a command: the demo. It drives the embedded scenarios, prints the
-/// table and writes the report.
-///
-/// Exit codes: 0 success, 1 a check failed, 2 usage, 3 unusable input or output, 4 interrupted.
-#[derive(Parser)]
-#[command(version)]
-struct Cli {
-    #[command(subcommand)]
-    command: Option<command::Command>,
-}
 
 fn main() -> ExitCode {
     interrupt::install();
-    match Cli::parse().command.unwrap_or_default().run() {
+    let done = arguments::parse().and_then(|arguments| {
+        stdout::set_quiet(arguments.quiet);
+        arguments.command.unwrap_or_default().run()
+    });
+    match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
     }

@@ -4,6 +4,7 @@
 //! without data.
 
 mod cases;
+mod gallery;
 mod model;
 mod sweep;
 mod why;
@@ -17,6 +18,7 @@ use cede_data::{Dataset, Encounter, EncounterId, Role, Split, output};
 use cede_sim::evaluate::{Drive, TableRow};
 use cede_sim::transparency;
 use cede_train::run::curve::Point;
+use gallery::Gallery;
 use model::{Case, Episodes, Interventions, Page};
 use serde::Serialize;
 use std::collections::HashMap;
@@ -39,13 +41,16 @@ const SCRIPT: &str = concat!(
     include_str!("report/page/replay.js"),
     include_str!("report/page/sweep.js"),
     include_str!("report/page/learning.js"),
+    include_str!("report/page/gallery.js"),
+    include_str!("report/page/save.js"),
     include_str!("report/page/page.js"),
 );
 
 /// The command line.
 pub(crate) fn command() -> String {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    format!("cede {}", arguments.join(" "))
+    let arguments = std::env::args_os().skip(1);
+    let words = arguments.map(|argument| format!(" {}", argument.to_string_lossy()));
+    format!("cede{}", words.collect::<String>())
 }
 
 /// Collects the content of the page, row by row.
@@ -53,6 +58,7 @@ pub(crate) struct Report {
     page: Page,
     /// Index of each chosen encounter in the page's cases.
     chosen: HashMap<EncounterId, usize>,
+    gallery: Gallery,
 }
 
 impl Report {
@@ -66,6 +72,7 @@ impl Report {
         let ids = encounters.iter().map(|encounter| encounter.id.clone());
         Self {
             chosen: ids.zip(0..).collect(),
+            gallery: Gallery::default(),
             page: Page {
                 subtitle: subtitle(dataset),
                 provenance: format!("Cede {}. Again: {command}", env!("CARGO_PKG_VERSION")),
@@ -86,12 +93,13 @@ impl Report {
         };
         self.page.name(&driver);
         for drive in drives {
+            let name = match drive.ego {
+                None => driver.clone(),
+                Some(Role::Left) => format!("{driver} as left-turner"),
+                Some(Role::Other) => format!("{driver} as other"),
+            };
+            self.gallery.add(&name, drive);
             if let Some(&place) = self.chosen.get(&drive.encounter.id) {
-                let name = match drive.ego {
-                    None => driver.clone(),
-                    Some(Role::Left) => format!("{driver} as left-turner"),
-                    Some(Role::Other) => format!("{driver} as other"),
-                };
                 self.page.name(&name);
                 self.page.cases[place].add(name, drive);
             }
@@ -124,7 +132,8 @@ impl Report {
 
     /// Writes the page.
     pub(crate) fn write(mut self, path: &Path) -> Result<(), Failure> {
-        self.page.cases.retain(Case::was_driven);
+        self.keep_driven();
+        self.hang();
         self.page.verdict = crate::verdict::sentence(&self.page.rows).unwrap_or_default();
         let data = serde_json::to_string(&self.page)
             .map_err(|error| Failure::input(error, "report this as a bug"))?;
@@ -138,6 +147,33 @@ impl Report {
             .replace("{{data}}", &data);
         output::write(path, |out| out.write_all(html.as_bytes()))?;
         Ok(())
+    }
+}
+
+impl Report {
+    /// Leaves out cases that nobody drove.
+    fn keep_driven(&mut self) {
+        let (cases, chosen) = (&mut self.page.cases, &mut self.chosen);
+        let driven: Vec<bool> = cases.iter().map(Case::was_driven).collect();
+        chosen.retain(|_, place| driven[*place]);
+        for place in chosen.values_mut() {
+            *place = driven[..*place].iter().filter(|driven| **driven).count();
+        }
+        cases.retain(Case::was_driven);
+    }
+
+    /// Adds the gallery, with the cases that are shown for it alone.
+    fn hang(&mut self) {
+        let (cases, chosen) = (&mut self.page.cases, &mut self.chosen);
+        self.page.gallery = std::mem::take(&mut self.gallery).exhibits(|id, case| {
+            if let Some(&place) = chosen.get(id) {
+                cases[place].merge(case);
+                return place;
+            }
+            cases.push(case.found());
+            chosen.insert(id.clone(), cases.len() - 1);
+            cases.len() - 1
+        });
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use cede_data::Dataset;
-use clap::builder::RangedU64ValueParser;
+use clap::builder::{NonEmptyStringValueParser, RangedU64ValueParser};
 use std::path::Path;
 
 /// Default site of the recordings.
@@ -14,20 +14,20 @@ const ENCOUNTERS: usize = 1000;
 #[derive(clap::Args)]
 pub(crate) struct Source {
     /// Folder of recordings, or `synthetic`: the embedded generator
-    #[arg(long, value_name = "DIR|synthetic")]
+    #[arg(long, value_name = "DIR|synthetic", value_parser = NonEmptyStringValueParser::new())]
     pub(crate) data: String,
     /// Sites of the recordings, separated by commas: `EP0`, `MA`, the name of a folder, or the path of a
     /// site description; `all`: every folder of recordings in DIR [default: EP0]
-    #[arg(long, value_delimiter = ',', value_name = "NAME[,NAME…]|all")]
+    #[arg(long, value_delimiter = ',', value_name = "NAME[,NAME…]|all", value_parser = NonEmptyStringValueParser::new())]
     site: Vec<String>,
     /// Number of synthetic encounters, at least [default: 1000]
-    #[arg(long, value_name = "N", value_parser = at_least_one())]
+    #[arg(long, value_name = "N", value_parser = some_encounters())]
     encounters: Option<usize>,
 }
 
-/// Reads a number from 1 on.
-pub(crate) fn at_least_one() -> RangedU64ValueParser<usize> {
-    RangedU64ValueParser::new().range(1..)
+/// Reads a number of synthetic encounters: those that memory holds.
+pub(crate) fn some_encounters() -> RangedU64ValueParser<usize> {
+    RangedU64ValueParser::new().range(1..=1_000_000)
 }
 
 impl Source {

@@ -4,6 +4,7 @@
 use std::fmt::Arguments;
 use std::io::{self, ErrorKind, Write};
 use std::process;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// As std's; see [`crate::stdout`].
 macro_rules! print {
@@ -16,9 +17,33 @@ macro_rules! println {
     ($($what:tt)*) => { print!("{}\n", format_args!($($what)*)) };
 }
 
+/// Tells on stderr what is neither the result nor an error, unless `--quiet` is given.
+macro_rules! note {
+    ($($what:tt)*) => { $crate::stdout::note(format_args!($($what)*)) };
+}
+
 /// As std's, but ignores errors of stderr.
 macro_rules! eprintln {
     ($($what:tt)*) => { $crate::stdout::tell(format_args!($($what)*)) };
+}
+
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// Whether notes are left out, from now on.
+pub(crate) fn set_quiet(quiet: bool) {
+    QUIET.store(quiet, Relaxed);
+}
+
+/// Whether notes are left out.
+pub(crate) fn is_quiet() -> bool {
+    QUIET.load(Relaxed)
+}
+
+/// See [`note!`].
+pub(crate) fn note(what: Arguments<'_>) {
+    if !is_quiet() {
+        tell(what);
+    }
 }
 
 /// Prints a line on stderr.

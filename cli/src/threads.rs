@@ -23,7 +23,7 @@ impl Threads {
         let most = available_parallelism().map_or(1, usize::from) * A_CORE;
         if self.threads > most {
             let asked = self.threads;
-            eprintln!("--threads {asked}: {most} are used, {A_CORE} per core");
+            note!("--threads {asked}: {most} are used, {A_CORE} per core");
         }
         let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads.min(most));
         pool.build_global()

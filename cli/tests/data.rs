@@ -129,3 +129,32 @@ fn bad_input_ends_with_code_3_and_leaves_nothing() {
     let named = ["replay", "tracks.csv", "--pair", "one"];
     cede(folder.path(), &named).code(2);
 }
+
+#[test]
+fn a_new_site_is_drafted_from_its_tracks() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let made = ["data", "synthesize", "--out", "made", "--encounters", "300"];
+    cede(folder, &made).success();
+    for (site, arms) in [("SYN-T-AWS-0", 3), ("SYN-X-AWS-1", 4)] {
+        let data = format!("made/{site}");
+        let out = format!("{site}.toml");
+        let draft = ["data", "new-site", "--data", &data, "--out", &out];
+        let told = cede(folder, &draft).success();
+        let told = String::from_utf8(told.get_output().stdout.clone()).unwrap();
+        assert!(told.contains("encounters: "), "{told}");
+        let text = std::fs::read_to_string(folder.join(&out)).unwrap();
+        assert_eq!(text.matches("[[arm]]").count(), arms, "{text}");
+        assert!(text.contains("manoeuvre = \"left\""), "{text}");
+        let extract = ["data", "extract", "--data", &data, "--site", &out];
+        let counted = cede(folder, &extract).success();
+        let counted = String::from_utf8(counted.get_output().stdout.clone()).unwrap();
+        let total = counted.split_whitespace().rev().nth(1).unwrap();
+        assert!(
+            told.contains(&format!("encounters: {total} by the draft")),
+            "{told}{counted}"
+        );
+        // A description that somebody has corrected is not overwritten.
+        cede(folder, &draft).code(3);
+    }
+}

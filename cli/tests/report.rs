@@ -73,6 +73,113 @@ fn the_page_says_where_and_why_the_shield_acted() {
     assert_eq!(section("sweep").matches("class=\"named\"").count(), 4);
 }
 
+/// The page with a script at its end, as the browser leaves it.
+fn open_with(browser: &Path, page: &Path, script: &str) -> String {
+    let html = std::fs::read_to_string(page).unwrap();
+    let script = format!(
+        "<pre id=\"told\"></pre><script>{}</script></body>",
+        script.replace("</", "<\\/")
+    );
+    let tried = page.with_extension("tried.html");
+    std::fs::write(&tried, html.replace("</body>", &script)).unwrap();
+    let dom = open(browser, &url(&tried));
+    part(&dom, "<pre id=\"told\">", "</pre>").replace("<pre id=\"told\">", "")
+}
+
+/// What ends as the text of the page's `told`, from a script that calls `tell`.
+const TELL: &str =
+    "const tell = (what) => { document.getElementById('told').textContent = what; };";
+
+#[test]
+fn the_worst_moments_open_their_replay() {
+    let Some(browser) = browser() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let page = report(folder.path(), "off");
+    let dom = open(&browser, &url(&page));
+    let gallery = part(&dom, "<section id=\"gallery\"", "</section>");
+    assert!(
+        gallery.contains("Face-offs") || gallery.contains("Near misses"),
+        "{gallery}"
+    );
+    let told = open_with(
+        &browser,
+        &page,
+        &format!(
+            "{TELL}
+        const link = document.querySelector('#moments a');
+        link.click();
+        const at = (id) => document.getElementById(id);
+        setTimeout(() => tell([
+            report.cases[at('case').value].name === link.textContent,
+            link.nextSibling.textContent.startsWith(at('driver').value + ': '),
+            Number(at('time').value) >= linked().time,
+        ].join()), 300);
+    "
+        ),
+    );
+    assert_eq!(told, "true,true,true");
+}
+
+#[test]
+fn a_chart_is_saved_with_its_colours() {
+    let Some(browser) = browser() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let page = report(folder.path(), "off");
+    let script = format!(
+        "{TELL}
+        const files = [];
+        const make = URL.createObjectURL;
+        URL.createObjectURL = (blob) => {{ files.push(blob); return make.call(URL, blob); }};
+        const buttons = document.getElementById('st-left').closest('figure').querySelectorAll('.save button');
+        (async () => {{
+            for (const button of [...buttons, document.querySelector('.scene .save button')]) await button.onclick();
+            const chart = await files[0].text();
+            const kinds = files.map((file) => file.type);
+            tell([kinds.join(), chart.includes('var('), /stroke:rgb/.test(chart), files.every((f) => f.size > 1000)].join(' '));
+        }})();"
+    );
+    // The browser's time runs on while an image is decoded: on a busy machine it may be over first.
+    let mut attempts = (0..5).map(|_| open_with(&browser, &page, &script));
+    let told = attempts.find(|told| !told.is_empty()).unwrap_or_default();
+    let kinds = "image/svg+xml,image/svg+xml,image/png,image/png";
+    assert_eq!(told, format!("{kinds} false true true"));
+}
+
+/// axe-core: the file in `AXE`, or as `.ci/run` installs it.
+fn axe() -> Option<String> {
+    let installed = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../.build/axe/node_modules/axe-core/axe.min.js");
+    let path = std::env::var_os("AXE").map_or(installed, PathBuf::from);
+    let script = std::fs::read_to_string(path).ok();
+    if script.is_none() {
+        cede_tests::skip("axe-core (AXE, or npm install --prefix .build/axe axe-core@4)");
+    }
+    script
+}
+
+#[test]
+fn the_page_is_accessible() {
+    let (Some(browser), Some(axe)) = (browser(), axe()) else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let page = report(folder.path(), "both");
+    let audit = |before: &str| {
+        let rules = "['wcag2a', 'wcag2aa', 'wcag21aa', 'best-practice']";
+        let script = format!("{TELL} {before} {axe};
+            axe.run({{ runOnly: {rules} }}).then(({{ violations, passes }}) =>
+                tell(`${{passes.length > 20}} ${{violations.map((v) => v.id + ': ' + v.nodes[0].target).join('; ')}}`));");
+        open_with(&browser, &page, &script)
+    };
+    assert_eq!(audit("").trim(), "true");
+    assert_eq!(
+        audit("document.documentElement.style.colorScheme = 'dark';").trim(),
+        "true"
+    );
+    let broken = audit("document.getElementById('case').parentElement.firstChild.remove();");
+    assert!(broken.contains("select-name"), "{broken}");
+}
+
 #[test]
 fn a_broken_script_is_noticed() {
     let Some(browser) = browser() else { return };

@@ -110,9 +110,9 @@ pub enum Problem {
     /// A coordinate too far from the origin to be resolved to millimetres.
     #[error("{0} m is farther than 8192 m from the origin")]
     TooFar(f64),
-    /// A time before the recording's beginning.
-    #[error("a time must be at least 0, not {0} s")]
-    Negative(f64),
+    /// A time that no recording has.
+    #[error("a time must be from 0 to 1,000,000,000 s, not {0} s")]
+    Time(f64),
     /// A vehicle without extent.
     #[error("a vehicle's length and width must be positive, not {0} m")]
     NotPositive(f64),
@@ -180,7 +180,7 @@ impl Problem {
             Self::TooFar(_) => {
                 "subtract a common offset from all coordinates of the site and its map"
             }
-            Self::Negative(_) => "subtract the first time from all times",
+            Self::Time(_) => "subtract the first time from all times",
             Self::NotPositive(_) => "give the vehicle's size in metres",
             Self::TimeBackwards { .. } => "sort the rows of each track by time",
             Self::Duplicate { .. } => "delete one of the two rows",

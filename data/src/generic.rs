@@ -63,7 +63,7 @@ pub fn read(path: &Path) -> Result<Vec<Track>, DataError> {
 }
 
 fn checked(place: Place<'_>, fields: &Fields) -> Result<TrackRow, DataError> {
-    let seconds = place.not_negative("t", fields.t)?;
+    let seconds = place.time("t", fields.t)?;
     let finite = |column, value: Option<f64>| place.finite(column, value.unwrap_or(0.0));
     Ok(TrackRow {
         line: place.line,

@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 mod crossing;
+mod draft;
 pub mod encounter;
 mod error;
 mod extract;
@@ -19,6 +20,7 @@ pub mod synthetic;
 mod table;
 mod tracks;
 
+pub use draft::draft;
 pub use encounter::{Encounter, EncounterId, Manoeuvre, Participant, Role, Sample, SimRoute};
 pub use error::{DataError, Problem};
 pub use extract::{NEAR, extract};

@@ -5,6 +5,7 @@
 //! leaves the old file, if there was one, and nothing half-written. A program
 //! that ends while another thread writes calls [`abandon`] first.
 
+use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -47,7 +48,8 @@ fn reason(source: &io::Error) -> String {
 /// Writes the file at `path` through `fill`, creating its folder if need be.
 ///
 /// Until `fill` has succeeded and everything is on its way to the disk, `path`
-/// is not touched; then it is replaced in one step.
+/// is not touched; then it is replaced in one step. A link stays, and what it leads to is replaced. A pipe or a
+/// device, such as `/dev/null`, is written to.
 ///
 /// # Errors
 /// When the folder cannot be made, `fill` fails, or the disk refuses.
@@ -61,13 +63,66 @@ pub fn write(
     })
 }
 
-fn replace(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-    let folder = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
+/// Checks that a file can be written at `path`, creating its folder if need be: for a command that works long
+/// before it writes.
+///
+/// # Errors
+/// When the folder cannot be made or written to, or `path` is a folder.
+pub fn check(path: &Path) -> Result<(), OutputError> {
+    let checked = place(path).and_then(|place| match place {
+        Place::File { folder, .. } => Listed::temporary_in(&folder).map(drop),
+        Place::Stream(_) => Ok(()),
+    });
+    checked.map_err(|source| OutputError {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+/// What a path leads to.
+enum Place {
+    /// A file, which may not exist yet, in a folder that does.
+    File { file: PathBuf, folder: PathBuf },
+    /// A pipe or a device, which is written to and never replaced.
+    Stream(PathBuf),
+}
+
+fn place(path: &Path) -> io::Result<Place> {
+    let file = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    if let Ok(known) = std::fs::metadata(path) {
+        if known.is_dir() {
+            return Err(io::Error::other("this is a folder, not a file"));
+        }
+        if !known.is_file() {
+            return Ok(Place::Stream(path.to_owned()));
+        }
+    }
+    let folder = match file.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
+        _ => PathBuf::from("."),
     };
-    std::fs::create_dir_all(folder)?;
-    let (file, _listed) = Listed::temporary_in(folder)?;
+    std::fs::create_dir_all(&folder).map_err(|error| no_folder(&folder, error))?;
+    Ok(Place::File { file, folder })
+}
+
+/// Why `folder` cannot be made: often a file is in the way.
+fn no_folder(folder: &Path, error: io::Error) -> io::Error {
+    match folder.ancestors().find(|ancestor| ancestor.is_file()) {
+        Some(file) => io::Error::other(format!("{} is a file, not a folder", file.display())),
+        None => error,
+    }
+}
+
+fn replace(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let (path, folder) = match place(path)? {
+        Place::File { file, folder } => (file, folder),
+        Place::Stream(stream) => {
+            let mut writer = BufWriter::new(File::options().write(true).open(stream)?);
+            fill(&mut writer)?;
+            return writer.flush();
+        }
+    };
+    let (file, _listed) = Listed::temporary_in(&folder)?;
     let mut writer = BufWriter::new(file);
     fill(&mut writer)?;
     let file = writer.into_inner()?;
@@ -144,6 +199,42 @@ mod tests {
         write(&path, |out| out.write_all(b"whole")).unwrap();
         assert_eq!(std::fs::read(&path).unwrap(), b"whole");
         assert_eq!(files_in(path.parent().unwrap()), ["table.csv"]);
+    }
+
+    #[test]
+    fn what_cannot_be_written_is_known_before_the_work() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("file");
+        std::fs::write(&file, "old").unwrap();
+        for (path, why) in [
+            (file.join("table.csv"), "file is a file, not a folder"),
+            (file.join("deep/table.csv"), "file is a file, not a folder"),
+            (folder.path().to_owned(), "this is a folder, not a file"),
+        ] {
+            let told = check(&path).unwrap_err().to_string();
+            assert!(told.ends_with(why), "{told}");
+            let told = write(&path, |_| Ok(())).unwrap_err().to_string();
+            assert!(told.ends_with(why), "{told}");
+        }
+        check(&file).unwrap();
+        check(&folder.path().join("new/table.csv")).unwrap();
+        assert_eq!(std::fs::read(&file).unwrap(), b"old");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_and_devices_are_not_replaced() {
+        use std::os::unix::fs::FileTypeExt;
+        let folder = tempfile::tempdir().unwrap();
+        let [link, file] = ["link", "file"].map(|name| folder.path().join(name));
+        std::fs::write(&file, "old").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        write(&link, |out| out.write_all(b"new")).unwrap();
+        assert!(link.is_symlink());
+        assert_eq!(std::fs::read(&file).unwrap(), b"new");
+        write(Path::new("/dev/null"), |out| out.write_all(b"lost")).unwrap();
+        let kind = std::fs::metadata("/dev/null").unwrap().file_type();
+        assert!(kind.is_char_device());
     }
 
     #[test]

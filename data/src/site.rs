@@ -223,7 +223,7 @@ fn short(folder: &str) -> &str {
     }
 }
 
-fn by_turn(turn: f64) -> Manoeuvre {
+pub(crate) fn by_turn(turn: f64) -> Manoeuvre {
     match turn.to_degrees() {
         50.0..=130.0 => Manoeuvre::Left,
         -130.0..=-50.0 => Manoeuvre::Right,
@@ -245,14 +245,15 @@ fn conflict_of_any(one: &Track, other: &Track) -> Option<ConflictKind> {
     })
 }
 
+/// Whether `other` comes from ahead of `one`.
+pub(crate) fn is_oncoming(one: RawState, other: RawState) -> bool {
+    let difference = wrap(other.heading - one.heading - PI);
+    difference.abs().to_degrees() <= ONCOMING_DEGREES
+}
+
 fn conflict_by_headings(left: &Track, other: &Track) -> Option<ConflictKind> {
     let apart = |a: RawState, b: RawState| wrap(a.heading - b.heading).abs().to_degrees();
-    let reverse = RawState {
-        heading: left.first().heading + PI,
-        ..left.first()
-    };
-    let meets = by_turn(left.turn()) == Manoeuvre::Left
-        && apart(other.first(), reverse) <= ONCOMING_DEGREES;
+    let meets = by_turn(left.turn()) == Manoeuvre::Left && is_oncoming(left.first(), other.first());
     let merging = apart(left.last(), other.last()) < SAME_EXIT_DEGREES;
     meets.then_some(if merging {
         ConflictKind::Merging

@@ -56,14 +56,9 @@ impl Place<'_> {
     }
 
     /// `value`, if it is a time.
-    pub(crate) fn not_negative(&self, column: &str, value: f64) -> Result<f64, DataError> {
-        let not_negative = |t: f64| t >= 0.0;
-        self.check(
-            column,
-            self.finite(column, value)?,
-            not_negative,
-            Problem::Negative,
-        )
+    pub(crate) fn time(&self, column: &str, value: f64) -> Result<f64, DataError> {
+        let within = |t: f64| (0.0..=1e9).contains(&t);
+        self.check(column, self.finite(column, value)?, within, Problem::Time)
     }
 
     fn check(

@@ -240,7 +240,7 @@ fn generic_files() {
     the header needs track,t,x,y (s, m) and may have vx,vy,heading,length,width; INTERACTION's files are told by their name, vehicle_tracks_NNN.csv
     ");
     assert_snapshot!(of_generic("track,t,x,y\n1,-0.1,0,0\n"), @r"
-    tracks.csv:2: column `t`: a time must be at least 0, not -0.1 s
+    tracks.csv:2: column `t`: a time must be from 0 to 1,000,000,000 s, not -0.1 s
     subtract the first time from all times
     ");
     assert_snapshot!(of_generic("track,t,x,y,length\n1,0.1,0,0,long\n"), @r"

@@ -2,13 +2,14 @@
 # The C library: header, tests, the C examples on the host (also under sanitizers) and on Cortex-M4F, M7 and M33F under
 # QEMU, where they must print the same; no panic, no allocation, no function of a C library in it, and nothing global
 # but the interface. Shows as well that a planted fault of each kind is found.
-# Needs what firmware/setup.sh sets up; firmware/check.sh calls it.
+# Sets up what it needs (firmware/setup.sh); firmware/check.sh calls it.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 build=$PWD/.build/capi
 mkdir -p "$build"
 exec 7>"$build/lock" # one check at a time
 flock 7
+firmware/setup.sh
 source .build/cortex-m/env
 unset RUSTFLAGS
 export CARGO_TERM_QUIET=true

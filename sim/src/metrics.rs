@@ -5,7 +5,7 @@ mod svo;
 mod ttc;
 
 pub use svo::{recorded_states, svo_series};
-pub use ttc::HORIZON as TTC_HORIZON;
+pub use ttc::{HORIZON as TTC_HORIZON, least_ttc};
 
 use crate::episode::{Action, End, Episode};
 use cede_controller::kinematics::STEP;
@@ -66,7 +66,7 @@ impl Measures {
             position_rmse: deviation::position(encounter, episode, tested),
             svo_rmse: svo::error(encounter, episode),
             pet_error: pet_error(encounter, episode),
-            min_ttc: ttc::least(encounter, &episode.states),
+            min_ttc: least_ttc(encounter, &episode.states).map(|(_, seconds)| seconds),
             jerk: jerk(episode, tested),
             shielded: shielded(episode, tested),
         }

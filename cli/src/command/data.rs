@@ -2,6 +2,7 @@
 
 mod extract;
 mod inspect;
+mod new_site;
 mod synthesize;
 
 use crate::failure::Failure;
@@ -15,6 +16,8 @@ pub(crate) enum Data {
     Extract(extract::Args),
     /// Print the content of the recordings and draw the scene
     Inspect(inspect::Args),
+    /// Draft a scene description of a site that has none
+    NewSite(new_site::Args),
     /// Write synthetic recordings, maps and scene descriptions
     Synthesize(synthesize::Args),
 }
@@ -25,6 +28,7 @@ impl Data {
         match self {
             Self::Extract(args) => extract::run(args),
             Self::Inspect(args) => inspect::run(args),
+            Self::NewSite(args) => new_site::run(args),
             Self::Synthesize(args) => synthesize::run(args),
         }
     }
@@ -33,7 +37,7 @@ impl Data {
 /// Lists the files that were not read on stderr.
 fn name_passed_over(dataset: &Dataset) {
     for path in &dataset.passed_over {
-        eprintln!(
+        note!(
             "skipped, because it contains pedestrians: {}",
             path.display()
         );

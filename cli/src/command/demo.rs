@@ -22,7 +22,7 @@ const SEED: u64 = 1;
 /// Runs the demo.
 pub(crate) fn run() -> Result<(), Failure> {
     let dataset = Dataset::synthetic(ENCOUNTERS, SEED);
-    eprintln!(
+    note!(
         "driving {} synthetic encounters …",
         dataset.encounters.len()
     );

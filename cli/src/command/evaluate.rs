@@ -2,7 +2,7 @@
 
 mod episodes;
 
-use crate::contract::Named;
+use crate::contract::{self, Named};
 use crate::drivers::Drivers;
 use crate::failure::Failure;
 use crate::judge::{ModeName, Plan, ShieldName, UntilName};
@@ -10,7 +10,7 @@ use crate::report::{Report, command};
 use crate::source::{Source, names, not_empty};
 use crate::table;
 use crate::threads::Threads;
-use cede_data::{Dataset, Split};
+use cede_data::{Dataset, Split, output};
 use cede_sim::driver::Baseline;
 use cede_sim::evaluate::{Selection, TableRow};
 use episodes::EpisodeFile;
@@ -76,6 +76,7 @@ struct Output<'a> {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     args.threads.start()?;
     let mut plan = args.plan()?;
+    args.check_outputs()?;
     let sites = args.source.load(args.seed)?;
     sites.iter().try_for_each(not_empty)?;
     let mut report = args.report_on(&sites)?;
@@ -98,7 +99,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     if let (Some(mut report), Some(path)) = (report, &args.report) {
         if args.shield != ShieldName::Off {
-            report.sweep(&sites[0], args.contract.unwrap_or_default().0)?;
+            report.sweep(&sites[0], contract::or_worst_case(args.contract.as_ref())?)?;
         }
         report.write(path)?;
     }
@@ -124,9 +125,18 @@ impl Args {
             mode: self.mode,
             partner: self.partner.unwrap_or(Baseline::Replay),
             until: self.until,
-            shields: self.shield.shields(self.contract)?,
+            shields: self.shield.shields(self.contract.as_ref())?,
             seed: self.seed,
         })
+    }
+
+    /// Checks that the files can be written, before the work.
+    fn check_outputs(&self) -> Result<(), Failure> {
+        let episodes = self.episodes.iter().map(EpisodeFile::path);
+        for path in episodes.chain(self.report.as_deref()) {
+            output::check(path)?;
+        }
+        Ok(())
     }
 
     /// The report of `--report`.

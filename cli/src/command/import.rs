@@ -1,6 +1,7 @@
 //! `cede import`.
 
 use crate::failure::Failure;
+use crate::input;
 use cede_controller::policy::features::LIMIT;
 use cede_controller::{FeatureSet, Perspective, Policy};
 use cede_data::output;
@@ -27,7 +28,7 @@ Outputs, 2 or 4, or for an ego policy 1: the first vehicle's command, the second
 A joint policy's vehicles are the left-turner and the other. An ego policy's second output is the
 acceleration that it expects of the other; without it, the other is expected to keep its speed.
 
-Metadata: cede.features (raw, route, traffic, scene) and cede.perspective (ego, joint). --features and
+Metadata: cede.features (one of these sets) and cede.perspective (ego, joint). --features and
 --perspective override them. Without cede.features, --features is required; cede.perspective defaults to ego.
 
 Weights must be within ± 1000. A graph without Clip gets one; the limits of each feature are printed.",
@@ -68,9 +69,7 @@ fn perspectives() -> impl TypedValueParser<Value = Perspective> {
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let path = args.onnx.display();
-    let bytes = std::fs::read(&args.onnx).map_err(|error| {
-        Failure::input(format!("cannot read {path}: {error}"), "check the path")
-    })?;
+    let bytes = input::bytes(&args.onnx, "a policy in ONNX")?;
     let told = Told {
         features: args.features,
         perspective: args.perspective,

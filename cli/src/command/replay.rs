@@ -11,8 +11,9 @@ use crate::report::{Report, command};
 use cede_controller::Contract;
 use cede_data::{Dataset, Encounter};
 use cede_sim::episode::Until;
-use cede_sim::evaluate::{Evaluation, Label, Mode, Protocol, TableRow, evaluate};
-use std::path::PathBuf;
+use cede_sim::evaluate::{Drive, Evaluation, Label, Mode, Protocol, TableRow, evaluate};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 /// Options of `cede replay`.
@@ -41,6 +42,19 @@ pub(crate) struct Args {
     /// Path of the page (HTML)
     #[arg(long, default_value = "out/replay.html", value_name = "FILE")]
     out: PathBuf,
+    /// Print one JSON object instead of the tables; shares are fractions
+    #[arg(long)]
+    json: bool,
+}
+
+/// The output of `--json`.
+#[derive(Serialize)]
+struct Output<'a> {
+    file: u16,
+    left: u32,
+    other: u32,
+    page: &'a Path,
+    rows: &'a [TableRow],
 }
 
 /// The track numbers of an encounter's vehicles.
@@ -67,30 +81,40 @@ impl FromStr for TrackPair {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let shields = args.shield.shields(args.contract)?;
+    let shields = args.shield.shields(args.contract.as_ref())?;
     let contenders = args.driver.contenders(args.weights.as_deref())?;
     let dataset = Dataset::load(&args.file, &args.site)?;
     let encounter = args.choose(&dataset)?;
-    numbers::record(encounter);
+    if !args.json {
+        numbers::record(encounter);
+    }
     let mut report = Report::showing(vec![encounter], &dataset, &args.command(encounter));
+    let mut rows = Vec::new();
     for contender in contenders {
         for &shield in &shields {
-            drive(&contender, shield, encounter, &dataset, &mut report)?;
+            let (row, drives) = drive(&contender, shield, encounter, &dataset)?;
+            if !args.json {
+                drives.iter().for_each(|drive| numbers::drive(&row, drive));
+            }
+            report.add(&row, &drives);
+            rows.push(row);
         }
     }
     report.write(&args.out)?;
+    if args.json {
+        return args.print_json(encounter, &rows);
+    }
     println!("\nAnimated in {}", args.out.display());
     Ok(())
 }
 
-/// Drives `encounter`, prints the result, and adds it to `report`.
-fn drive(
+/// Drives `encounter`.
+fn drive<'e>(
     contender: &Contender,
     shield: Option<Contract>,
-    encounter: &Encounter,
+    encounter: &'e Encounter,
     dataset: &Dataset,
-    report: &mut Report,
-) -> Result<(), Failure> {
+) -> Result<(TableRow, Vec<Drive<'e>>), Failure> {
     let training: Vec<&Encounter> = dataset.encounters.iter().collect();
     let factory = contender.fit(&training, shield);
     let factory = factory.map_err(|error| Failure::input(error, "name another driver"))?;
@@ -112,15 +136,24 @@ fn drive(
         until: "cleared",
         shield: if shield.is_some() { "on" } else { "off" },
     };
-    let row = TableRow::of(label, &drives);
-    for drive in &drives {
-        numbers::drive(&row, drive);
-    }
-    report.add(&row, &drives);
-    Ok(())
+    Ok((TableRow::of(label, &drives), drives))
 }
 
 impl Args {
+    fn print_json(&self, encounter: &Encounter, rows: &[TableRow]) -> Result<(), Failure> {
+        let output = Output {
+            file: encounter.id.file,
+            left: encounter.id.left,
+            other: encounter.id.other,
+            page: &self.out,
+            rows,
+        };
+        let text = serde_json::to_string_pretty(&output)
+            .map_err(|error| Failure::input(error, "report this as a bug"))?;
+        println!("{text}");
+        Ok(())
+    }
+
     /// The command line that shows the same encounter.
     fn command(&self, encounter: &Encounter) -> String {
         let (left, other) = (encounter.id.left, encounter.id.other);

@@ -69,6 +69,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if args.transfer.is_some() && args.source.is_synthetic() {
         return Err(Failure::ignored("--transfer", "--data synthetic"));
     }
+    cede_data::output::check(&args.out.join("rows.json"))?;
     let sites = args.source.load(1)?;
     let rows = plan::rows(args, args.source.is_several())?;
     sites.iter().try_for_each(trainable)?;

@@ -7,12 +7,13 @@ mod order;
 mod provenance;
 
 use crate::failure::Failure;
+use crate::input;
 use crate::settings::{AlgorithmName, check, quoted, with};
 use crate::source::Source;
 use crate::threads::Threads;
 use cede_train::run::TrainSettings;
 use order::Order;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Options of `cede train`.
 #[derive(clap::Args)]
@@ -78,6 +79,8 @@ struct Options {
     threads: Threads,
 }
 
+/// What the file of `--settings` should be.
+const SETTINGS: &str = "settings as --show-settings prints them";
 /// Default seed of the synthetic encounters.
 const DATA_SEED: u64 = 1;
 
@@ -111,7 +114,11 @@ impl Method {
             self.algorithm.0.settings()
         };
         if let Some(path) = &self.settings {
-            settings = with(&settings, &read(path)?, &path.display().to_string())?;
+            settings = with(
+                &settings,
+                &input::text(path, SETTINGS)?,
+                &path.display().to_string(),
+            )?;
         }
         for set in &self.set {
             settings = with(&settings, &quoted(set), "--set")?;
@@ -119,11 +126,4 @@ impl Method {
         check(&settings)?;
         Ok(settings)
     }
-}
-
-fn read(path: &Path) -> Result<String, Failure> {
-    std::fs::read_to_string(path).map_err(|error| {
-        let problem = format!("cannot read {}: {error}", path.display());
-        Failure::input(problem, "check the path")
-    })
 }

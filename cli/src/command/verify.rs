@@ -14,6 +14,15 @@ mod shield;
 
 use crate::failure::Failure;
 use clap::Subcommand;
+use clap::builder::RangedU64ValueParser;
+
+/// The longest time limit, in seconds: eleven days.
+const LONGEST: u64 = 1_000_000;
+
+/// Reads a time limit.
+fn seconds() -> RangedU64ValueParser<u64> {
+    RangedU64ValueParser::new().range(1..=LONGEST)
+}
 
 /// Proves or refutes properties, checks proofs, and collects all evidence.
 #[derive(Subcommand)]

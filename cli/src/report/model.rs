@@ -1,5 +1,6 @@
 //! The content of the page, as its JSON.
 
+use super::gallery::Exhibit;
 use super::sweep::Panel;
 use super::why::{Class, words};
 use crate::table::PAPER;
@@ -35,6 +36,7 @@ pub(super) struct Page {
     pub(super) interventions: Vec<Interventions>,
     pub(super) sweep: Vec<Panel>,
     pub(super) learning: Vec<Curve>,
+    pub(super) gallery: Vec<Exhibit>,
 }
 
 impl Page {
@@ -117,6 +119,8 @@ pub(super) struct Case {
     record: Motion,
     drives: Vec<Driven>,
     around: Vec<Bystander>,
+    /// Whether it is shown for a bad moment of one driver alone.
+    found: bool,
 }
 
 #[derive(Serialize)]
@@ -173,6 +177,7 @@ impl Case {
             record: Motion::of(encounter, &states, Some(encounter.first), encounter.steps),
             drives: Vec::new(),
             around: bystanders.filter_map(|b| Bystander::of(b, shown)).collect(),
+            found: false,
         }
     }
 
@@ -202,6 +207,27 @@ impl Case {
             ),
             shielded: Role::BOTH.map(overruled),
         });
+    }
+
+    /// The case as one that is shown for a bad moment alone.
+    pub(super) fn found(self) -> Self {
+        Self {
+            found: true,
+            ..self
+        }
+    }
+
+    /// Adds the episodes of the same encounter in `other` of drivers that have none here.
+    pub(super) fn merge(&mut self, other: Self) {
+        for driven in other.drives {
+            if self
+                .drives
+                .iter()
+                .all(|known| known.driver != driven.driver)
+            {
+                self.drives.push(driven);
+            }
+        }
     }
 
     pub(super) fn was_driven(&self) -> bool {

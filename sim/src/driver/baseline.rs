@@ -94,7 +94,7 @@ impl fmt::Display for Baseline {
 
 /// There is no baseline of that name.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("no driver is called `{0}`")]
+#[error("no driver is called `{0}`; there are: {names}", names = Baseline::ALL.map(Baseline::name).join(", "))]
 pub struct UnknownBaseline(String);
 
 impl FromStr for Baseline {

@@ -12,17 +12,19 @@ pub const HORIZON: f32 = 5.0;
 /// Two footprints whose centres are further apart than this (m) cannot touch.
 const REACH: f32 = 5.4;
 
-/// The least time to collision (s) over `states`, in steps of 0.1 s; 0 if they touch.
-pub(super) fn least(encounter: &Encounter, states: &[[State; 2]]) -> Option<f64> {
-    let mut least: Option<u32> = None;
-    for &now in states {
+/// The least time to collision (s) over `states`, in steps of 0.1 s, and the step at which it is first so small; 0 if
+/// they touch. `None` above [`HORIZON`].
+#[must_use]
+pub fn least_ttc(encounter: &Encounter, states: &[[State; 2]]) -> Option<(usize, f64)> {
+    let mut least: Option<(usize, u32)> = None;
+    for (step, &now) in states.iter().enumerate() {
         // Only what is sooner than the least so far matters.
-        let horizon = least.unwrap_or((HORIZON / STEP) as u32 + 1);
+        let horizon = least.map_or((HORIZON / STEP) as u32 + 1, |(_, ahead)| ahead);
         if let Some(ahead) = (0..horizon).find(|&ahead| touch(encounter, now, ahead)) {
-            least = Some(ahead);
+            least = Some((step, ahead));
         }
     }
-    least.map(|steps| f64::from(steps) * f64::from(STEP))
+    least.map(|(step, ahead)| (step, f64::from(ahead) * f64::from(STEP)))
 }
 
 /// Whether the two touch `ahead` steps after `states` at constant speed.

@@ -6,43 +6,45 @@ use crate::algorithm::sac::SacSettings;
 use cede_controller::policy::mlp::{LANES, MAX_WIDTH};
 
 /// A setting that is out of its range.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{name} must be {range}")]
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("{name} must be {range}, not {value}")]
 pub struct OutOfRange {
     /// Name of the setting.
     pub name: &'static str,
+    /// Its value.
+    pub value: f64,
     /// Its range in words.
     pub range: &'static str,
 }
 
-/// The name of a setting, whether it is in its range, and the range in words.
-type Check = (&'static str, bool, &'static str);
+/// The name of a setting, its value, whether it is in its range, and the range in words.
+type Check = (&'static str, f64, bool, &'static str);
 
 const COUNT: &str = "1 to 1,000,000";
 const HORIZON: &str = "1 to 1,000";
-const POSITIVE: &str = "above 0";
-const NOT_NEGATIVE: &str = "0 or more";
+const POSITIVE: &str = "above 0 and finite";
+const NOT_NEGATIVE: &str = "0 or more and finite";
 const SHARE: &str = "0 to 1";
 
 fn count(name: &'static str, n: usize) -> Check {
-    (name, (1..=1_000_000).contains(&n), COUNT)
+    (name, n as f64, (1..=1_000_000).contains(&n), COUNT)
 }
 
 fn positive(name: &'static str, x: f32) -> Check {
-    (name, x > 0.0 && x.is_finite(), POSITIVE)
+    (name, x.into(), x > 0.0 && x.is_finite(), POSITIVE)
 }
 
 fn not_negative(name: &'static str, x: f32) -> Check {
-    (name, x >= 0.0 && x.is_finite(), NOT_NEGATIVE)
+    (name, x.into(), x >= 0.0 && x.is_finite(), NOT_NEGATIVE)
 }
 
 fn share(name: &'static str, x: f32) -> Check {
-    (name, (0.0..=1.0).contains(&x), SHARE)
+    (name, x.into(), (0.0..=1.0).contains(&x), SHARE)
 }
 
 fn width(width: usize) -> Check {
     let fits = width.is_multiple_of(LANES) && (LANES..=MAX_WIDTH).contains(&width);
-    ("width", fits, "a multiple of 16 up to 128")
+    ("width", width as f64, fits, "a multiple of 16 up to 128")
 }
 
 pub(super) fn check_bc(s: &BcSettings) -> Result<(), OutOfRange> {
@@ -62,11 +64,13 @@ pub(super) fn check_sac(s: &SacSettings) -> Result<(), OutOfRange> {
         count("steps_per_update", s.steps_per_update as usize),
         (
             "buffer",
+            s.buffer as f64,
             (1..=10_000_000).contains(&s.buffer),
             "1 to 10,000,000",
         ),
         (
             "buffer_minimum",
+            s.buffer_minimum as f64,
             s.buffer_minimum <= s.buffer,
             "no more than buffer",
         ),
@@ -78,6 +82,7 @@ pub(super) fn check_sac(s: &SacSettings) -> Result<(), OutOfRange> {
         share("rates.averaging", rates.averaging),
         (
             "rates.target_entropy",
+            rates.target_entropy.into(),
             rates.target_entropy.is_finite(),
             "a number",
         ),
@@ -88,12 +93,13 @@ pub(super) fn check_sac(s: &SacSettings) -> Result<(), OutOfRange> {
 pub(super) fn check_apg(s: &ApgSettings) -> Result<(), OutOfRange> {
     let (cost, refinement, claims) = (&s.cost, &s.refinement, &s.claims);
     let joint = s.width.saturating_mul(s.members as usize);
-    let updates = |name, n| (name, n <= 10_000_000, "0 to 10,000,000");
-    let horizon = |name, n| (name, (1..=1_000).contains(&n), HORIZON);
+    let updates = |name, n: u32| (name, f64::from(n), n <= 10_000_000, "0 to 10,000,000");
+    let horizon = |name, n: usize| (name, n as f64, (1..=1_000).contains(&n), HORIZON);
     first_violation(vec![
         width(s.width),
         (
             "members",
+            f64::from(s.members),
             (1..=MAX_WIDTH).contains(&joint),
             "1 or more, and times width at most 128",
         ),
@@ -118,6 +124,7 @@ pub(super) fn check_apg(s: &ApgSettings) -> Result<(), OutOfRange> {
         positive("refinement.rate", refinement.rate),
         (
             "refinement.places",
+            refinement.places as f64,
             refinement.places <= 1_000_000,
             "0 to 1,000,000",
         ),
@@ -125,14 +132,24 @@ pub(super) fn check_apg(s: &ApgSettings) -> Result<(), OutOfRange> {
         not_negative("claims.weight", claims.weight),
         not_negative("claims.margin", claims.margin),
         not_negative("claims.slope_margin", claims.slope_margin),
-        ("claims.fresh", claims.fresh <= 10_000, "0 to 10,000"),
-        ("claims.hard", claims.hard <= 10_000, "0 to 10,000"),
+        (
+            "claims.fresh",
+            claims.fresh as f64,
+            claims.fresh <= 10_000,
+            "0 to 10,000",
+        ),
+        (
+            "claims.hard",
+            claims.hard as f64,
+            claims.hard <= 10_000,
+            "0 to 10,000",
+        ),
     ])
 }
 
 fn first_violation(checks: Vec<Check>) -> Result<(), OutOfRange> {
-    match checks.into_iter().find(|(_, holds, _)| !holds) {
-        Some((name, _, range)) => Err(OutOfRange { name, range }),
+    match checks.into_iter().find(|(_, _, holds, _)| !holds) {
+        Some((name, value, _, range)) => Err(OutOfRange { name, value, range }),
         None => Ok(()),
     }
 }

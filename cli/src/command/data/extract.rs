@@ -100,6 +100,9 @@ impl<'d> EncounterRow<'d> {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    if let Some(path) = &args.out {
+        output::check(path)?;
+    }
     let dataset = args.source.load_one_seeded("--seed", args.seed, 0)?;
     super::name_passed_over(&dataset);
     not_empty(&dataset)?;

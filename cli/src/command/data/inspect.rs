@@ -39,7 +39,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     super::name_passed_over(&dataset);
     let summary = Summary::of(&dataset);
     scene::write(&args.draw, &dataset)?;
-    eprintln!("drawn in {}", args.draw.display());
+    note!("drawn in {}", args.draw.display());
     if args.json {
         super::print_json(&summary)?;
     } else {

@@ -1,7 +1,9 @@
 //! `cede data synthesize`: synthetic recordings as files.
 
 use crate::failure::Failure;
-use crate::source::at_least_one;
+use crate::source::some_encounters;
+use cede_data::output;
+use cede_data::synthetic::WrittenSite;
 use std::path::PathBuf;
 
 /// Options of `cede data synthesize`.
@@ -11,16 +13,29 @@ pub(crate) struct Args {
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// At least so many encounters (whole recordings are written)
-    #[arg(long, default_value_t = 1000, value_name = "N", value_parser = at_least_one())]
+    #[arg(long, default_value_t = 1000, value_name = "N", value_parser = some_encounters())]
     encounters: usize,
     /// The same seed gives the same files
     #[arg(long, default_value_t = 0, value_name = "S")]
     seed: u64,
+    /// Print the counts as one JSON object
+    #[arg(long)]
+    json: bool,
 }
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    output::check(&args.out.join("SITE.toml"))?;
     let sites = cede_data::synthetic::write(&args.out, args.encounters, args.seed)?;
+    if args.json {
+        let json = |site: &WrittenSite| {
+            serde_json::json!({
+                "site": site.name, "recordings": site.files.len(), "encounters": site.encounters,
+            })
+        };
+        let sites: Vec<_> = sites.iter().map(json).collect();
+        return super::print_json(&serde_json::json!({ "folder": args.out, "sites": sites }));
+    }
     println!("site          recordings  encounters");
     for site in &sites {
         let (name, files) = (&site.name, site.files.len());
@@ -30,7 +45,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     println!("{total} encounters in {}", args.out.display());
     if let Some(site) = sites.first() {
         let description = args.out.join(format!("{}.toml", site.name));
-        eprintln!(
+        note!(
             "read a site with: --data {} --site {}",
             args.out.display(),
             description.display()

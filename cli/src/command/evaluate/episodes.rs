@@ -10,7 +10,7 @@ use parquet::record::RecordWriter;
 use parquet_derive::ParquetRecordWriter;
 use serde::Serialize;
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::Arc;
 
@@ -42,6 +42,10 @@ impl FromStr for EpisodeFile {
 }
 
 impl EpisodeFile {
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Writes `records`. An earlier file stays unless all of them are written.
     pub(crate) fn write(&self, records: &[Record]) -> Result<(), Failure> {
         output::write(&self.path, |file| match self.format {

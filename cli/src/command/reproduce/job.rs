@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::interrupt;
+use crate::progress;
 use crate::settings::RowSettings;
 use crate::training::{Identity, Training};
 use cede_controller::Policy;
@@ -11,10 +12,11 @@ use cede_train::driving::episodes::Course;
 use cede_train::run::Lessons;
 use cede_train::run::curve::{Curve, Panel};
 use cede_train::run::provenance::{Provenance, data_hash};
-use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::time::Instant;
 
 /// One training, and what its policy is judged on.
 pub(super) struct Job<'d> {
@@ -59,12 +61,10 @@ pub(super) fn train_all(
 ) -> Result<Vec<Trained>, Failure> {
     /// Positions of the bar per training.
     const FINE: f64 = 1e4;
-    let bar = ProgressBar::new(jobs.len() as u64 * FINE as u64);
-    if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent} % of {msg}, {eta} left") {
-        bar.set_style(style);
-    }
+    let length = jobs.len() as u64 * FINE as u64;
+    let bar = progress::bar(length, "{bar:30} {percent} % of {msg}, {eta} left");
     bar.set_message(format!("{} trainings", jobs.len()));
-    let done = Mutex::new(0.0);
+    let (done, finished) = (Mutex::new(0.0), AtomicUsize::new(0));
     let progress = |share: f64| {
         if let Ok(mut done) = done.lock() {
             *done += share;
@@ -74,7 +74,17 @@ pub(super) fn train_all(
     let trained = jobs
         .par_iter()
         .with_max_len(1)
-        .map(|job| job.train(site, folder, resume, &progress))
+        .map(|job| {
+            let begun = Instant::now();
+            let trained = job.train(site, folder, resume, &progress)?;
+            // Without a terminal there is no bar.
+            if bar.is_hidden() {
+                let count = finished.fetch_add(1, Relaxed) + 1;
+                let (all, seconds) = (jobs.len(), begun.elapsed().as_secs_f64());
+                note!("{count} of {all} trainings: {}, {seconds:.1} s", job.name());
+            }
+            Ok(trained)
+        })
         .collect();
     bar.finish_and_clear();
     trained

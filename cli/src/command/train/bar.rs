@@ -1,8 +1,9 @@
 //! The progress bar of a training.
 
+use crate::progress;
 use cede_train::driving::judge::judge;
 use cede_train::run::{Lessons, Report, Run};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use std::time::{Duration, Instant};
 
 /// Time between two judgements of the policy.
@@ -23,10 +24,8 @@ pub(super) struct Bar<'l> {
 
 impl<'l> Bar<'l> {
     pub(super) fn new(lessons: &'l Lessons<'l>) -> Self {
-        let bar = ProgressBar::new(0);
-        let style = ProgressStyle::with_template("{bar:30} {percent} % {eta} left, {msg}");
         Self {
-            bar: style.map_or_else(|_| bar.clone(), |style| bar.clone().with_style(style)),
+            bar: progress::bar(0, "{bar:30} {percent} % {eta} left, {msg}"),
             lessons,
             judged: None,
             score: String::new(),

@@ -1,8 +1,9 @@
 //! One training: data, claims, checkpoints, logs and weights.
 
 use super::bar::Bar;
-use super::{DATA_SEED, Method, Options, provenance, read};
+use super::{DATA_SEED, Method, Options, provenance};
 use crate::failure::Failure;
+use crate::input;
 use crate::source::Source;
 use crate::training::{Identity, Training};
 use cede_data::{Dataset, Encounter, Split, output};
@@ -13,6 +14,9 @@ use cede_train::run::log::Log;
 use cede_train::run::provenance::{Provenance, data_hash};
 use cede_train::run::{Algorithm, Lessons, Run, TrainSettings};
 use std::path::{Path, PathBuf};
+
+/// What the file of `--claims` should be.
+const CLAIMS: &str = "properties as docs/safety/policy.toml has them";
 
 /// A training with its options.
 pub(super) struct Order<'a> {
@@ -34,6 +38,7 @@ impl Order<'_> {
             return Err(Failure::ignored("--every-pair", algorithm.name()));
         }
         let (claims, text) = self.claims(algorithm)?;
+        output::check(self.out)?;
         self.options.threads.start()?;
         let sites = self
             .source
@@ -79,10 +84,9 @@ impl Order<'_> {
         if !matches!(algorithm, Algorithm::Apg) {
             return Err(Failure::ignored("--claims", algorithm.name()));
         }
-        let text = read(path)?;
-        let properties = Properties::read(&text).map_err(|error| {
-            Failure::input(format!("{}: {error}", path.display()), "correct the file")
-        })?;
+        let text = input::text(path, CLAIMS)?;
+        let properties =
+            Properties::read(&text).map_err(|error| input::unusable(path, error, CLAIMS))?;
         Ok((properties.property, text))
     }
 

@@ -1,7 +1,7 @@
 //! `cede verify beyond`: encounters in which one number of the contract does not hold.
 
 use super::checked::{Check, Checked, Finding};
-use crate::contract::Named;
+use crate::contract::{self, Named};
 use crate::failure::Failure;
 use crate::safety::Kind;
 use crate::threads::Threads;
@@ -29,7 +29,7 @@ pub(crate) struct Beyond {
     #[arg(long, default_value_t = 2000, value_parser = clap::value_parser!(u64).range(1..))]
     encounters: u64,
     /// Seed of the first encounter.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(..=u64::MAX / 2))]
     seed: u64,
     #[command(flatten)]
     threads: Threads,
@@ -59,11 +59,11 @@ impl Beyond {
         self.check()?.tell(self.json)
     }
 
-    fn lines(&self) -> Vec<Line> {
-        let contract = self.contract.unwrap_or_default().0;
+    fn lines(&self) -> Result<Vec<Line>, Failure> {
+        let contract = contract::or_worst_case(self.contract.as_ref())?;
         let mut lines = Vec::new();
         for row in ROWS {
-            eprintln!("{} …", row.name);
+            note!("{} …", row.name);
             for temper in [Temper::Hostile, Temper::Gentle] {
                 let counts = Guard::ALL.map(|guard| {
                     let driven = (guard, temper);
@@ -76,13 +76,13 @@ impl Beyond {
                 });
             }
         }
-        lines
+        Ok(lines)
     }
 }
 
 impl Check for Beyond {
     fn check(&self) -> Result<Checked, Failure> {
-        let lines = self.lines();
+        let lines = self.lines()?;
         let within = shielded(lines.iter().filter(|line| line.row == ROWS[0]));
         let all = shielded(lines.iter());
         let said = format!(

@@ -25,7 +25,7 @@ pub(crate) struct Campaign {
     #[arg(long, default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..))]
     steps: u64,
     /// Seed of the first scenario.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(..=u64::MAX / 2))]
     seed: u64,
     /// Print one JSON object instead.
     #[arg(long)]

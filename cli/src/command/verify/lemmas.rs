@@ -1,6 +1,7 @@
 //! `cede verify lemmas`.
 
 use super::checked::{Check, Checked, Finding, open};
+use super::seconds;
 use crate::failure::Failure;
 use crate::safety::Kind;
 use crate::threads::Threads;
@@ -28,7 +29,7 @@ pub(crate) struct Lemmas {
     #[arg(long, value_name = "PATH")]
     solver: Option<PathBuf>,
     /// Time limit per query in seconds.
-    #[arg(long, value_name = "SECONDS", default_value_t = 60)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 60, value_parser = seconds())]
     timeout: u64,
     /// Also write the queries to this folder as SMT-LIB files. `--write rocq FILE`: write the bounds and margins to this
     /// file as Rocq definitions, and prove nothing.

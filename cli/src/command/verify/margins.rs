@@ -1,7 +1,7 @@
 //! `cede verify margins`.
 
 use super::checked::{Check, Checked, Finding};
-use crate::contract::Named;
+use crate::contract::{self, Named};
 use crate::failure::Failure;
 use crate::safety::Kind;
 use crate::threads::Threads;
@@ -51,6 +51,10 @@ pub(crate) struct Margins {
     json: bool,
 }
 
+/// What to do about a bound that is not shown.
+const MEND: &str =
+    "more --boxes sharpen the bounds, a larger `slack` of the contract covers them";
+
 /// A predicate under a contract, with its bound.
 struct MarginRow {
     contract: &'static str,
@@ -66,16 +70,16 @@ impl Margins {
         self.check()?.tell(self.json)
     }
 
-    fn rows(&self) -> Vec<MarginRow> {
+    fn rows(&self, contract: Contract) -> Vec<MarginRow> {
         let contracts = match self.contract {
-            Some(Named(contract)) => vec![("as given", contract)],
+            Some(_) => vec![("as given", contract)],
             None => CONTRACTS.to_vec(),
         };
         let all = contracts
             .iter()
             .flat_map(|contract| Predicate::ALL.map(|predicate| (contract, predicate)));
         all.map(|((name, contract), predicate)| {
-            eprintln!("{}, {name} …", predicate.name());
+            note!("{}, {name} …", predicate.name());
             MarginRow {
                 contract: name,
                 predicate,
@@ -89,8 +93,9 @@ impl Margins {
 
 impl Check for Margins {
     fn check(&self) -> Result<Checked, Failure> {
-        let short = shortfall(&self.contract.unwrap_or_default().0);
-        let rows = self.rows();
+        let contract = contract::or_worst_case(self.contract.as_ref())?;
+        let short = shortfall(&contract);
+        let rows = self.rows(contract);
         let mut open: Vec<String> = rows
             .iter()
             .filter(|row| !row.shown())
@@ -106,7 +111,7 @@ impl Check for Margins {
             json: serde_json::json!({ "margins": objects, "going_short_s": short }),
             summary: format!("rounding moves a margin by at most {:.2} mm", 1e3 * largest),
             findings: rows.iter().map(MarginRow::finding).collect(),
-            open: (!open.is_empty()).then(|| format!("not shown: {}", open.join("; "))),
+            open: (!open.is_empty()).then(|| format!("not shown: {}; {MEND}", open.join("; "))),
         })
     }
 }

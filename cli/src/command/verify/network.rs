@@ -1,14 +1,14 @@
 //! `cede verify network`.
 
 use crate::failure::Failure;
+use crate::input::{self, unusable};
 use crate::threads::Threads;
 use cede_data::output;
 use cede_nnv::{self as verifier, Answer, Branching, Report, SearchOptions};
 use cede_nnv_check::{self as trusted, Certificate, Source};
 use clap::{Args, ValueEnum};
-use miette::{IntoDiagnostic, miette};
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 /// The text below the options in `cede help verify network`.
@@ -27,7 +27,7 @@ pub(crate) struct Network {
     #[arg(long, value_name = "FILE")]
     vnnlib: PathBuf,
     /// Time limit in seconds.
-    #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds)]
     timeout: f64,
     #[command(flatten)]
     threads: Threads,
@@ -67,13 +67,10 @@ impl From<Cut> for Branching {
 impl Network {
     /// Runs the command.
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let timeout = Duration::try_from_secs_f64(self.timeout).map_err(|_| {
-            Failure::Input(miette!(
-                help = "give seconds, for example 60",
-                "--timeout {}",
-                self.timeout
-            ))
-        })?;
+        let timeout = Duration::from_secs_f64(self.timeout);
+        if let Some(path) = &self.certificate {
+            output::check(path)?;
+        }
         self.threads.start()?;
         let json = self.json;
         let start = Instant::now();
@@ -93,27 +90,30 @@ impl Network {
 
     /// Verifies, and gives what is to be printed.
     fn told(&self, timeout: Duration, start: Instant) -> Result<String, Failure> {
-        let (model, text) = (bytes(&self.onnx, ONNX)?, bytes(&self.vnnlib, VNNLIB)?);
-        let network = trusted::onnx::read(&model).into_diagnostic();
-        let network = network.map_err(named(&self.onnx, ONNX))?;
-        let property = trusted::vnnlib::read_bytes(&text).into_diagnostic();
-        let property = property.map_err(named(&self.vnnlib, VNNLIB))?;
+        let model = input::bytes(&self.onnx, ONNX)?;
+        let text = input::bytes(&self.vnnlib, VNNLIB)?;
+        let network = trusted::onnx::read(&model);
+        let network = network.map_err(|error| unusable(&self.onnx, error, ONNX))?;
+        let property = trusted::vnnlib::read_bytes(&text);
+        let property = property.map_err(|error| unusable(&self.vnnlib, error, VNNLIB))?;
         let options = SearchOptions::default()
             .timeout(timeout.saturating_sub(start.elapsed()))
             .seed(self.seed)
             .branching(self.branching.into())
             .record(self.certificate.is_some());
-        let report = verifier::verify(&network, &property, options).into_diagnostic();
-        let mut report = report.map_err(Failure::Input)?;
+        let report = verifier::verify(&network, &property, options);
+        let mut report = report.map_err(|error| {
+            let (onnx, vnnlib) = (self.onnx.display(), self.vnnlib.display());
+            let mend = "give a network and a property of its inputs and outputs";
+            Failure::input(format!("{onnx} and {vnnlib}: {error}"), mend)
+        })?;
         if let (Some(path), Answer::Unsat) = (&self.certificate, &report.answer) {
             let program = concat!("cede ", env!("CARGO_PKG_VERSION"));
             let onnx = Source::new(&self.onnx, &model);
             let vnnlib = Source::new(&self.vnnlib, &text);
             let proofs = std::mem::take(&mut report.proofs);
             let text = Certificate::new(program, onnx, vnnlib, proofs).to_text();
-            output::write(path, |file| file.write_all(text.as_bytes()))
-                .into_diagnostic()
-                .map_err(Failure::Input)?;
+            output::write(path, |file| file.write_all(text.as_bytes()))?;
         }
         Ok(if self.json {
             as_json(&report.answer, Some(&report), start)
@@ -145,18 +145,13 @@ fn as_json(answer: &Answer, report: Option<&Report>, start: Instant) -> String {
 
 /// What may pass beyond the time limit before nothing is waited for any more.
 const GRACE: Duration = Duration::from_millis(500);
-const ONNX: &str = "--onnx: a feed-forward network in ONNX";
-const VNNLIB: &str = "--vnnlib: a property in VNN-LIB 1.0";
+const ONNX: &str = "--onnx a feed-forward network in ONNX";
+const VNNLIB: &str = "--vnnlib a property in VNN-LIB 1.0";
 
-/// A file's bytes.
-pub(crate) fn bytes(path: &Path, help: &'static str) -> Result<Vec<u8>, Failure> {
-    std::fs::read(path)
-        .into_diagnostic()
-        .map_err(named(path, help))
-}
-
-/// Names the file, and what it should be, in an error.
-fn named(path: &Path, help: &'static str) -> impl Fn(miette::Report) -> Failure {
-    let place = path.display().to_string();
-    move |error| Failure::Input(error.wrap_err(format!("cannot use {place} ({help})")))
+/// Reads a time limit.
+fn seconds(text: &str) -> Result<f64, String> {
+    let limit = super::LONGEST as f64;
+    let seconds = text.parse().ok();
+    let within = seconds.filter(|seconds| (0.0..=limit).contains(seconds));
+    within.ok_or_else(|| format!("not a number of seconds from 0 to {limit}"))
 }

@@ -1,7 +1,10 @@
 //! `cede verify policy`.
 
 use super::checked::{Check, Checked, Finding, open};
+use super::seconds;
+use crate::drivers::WEIGHTS;
 use crate::failure::Failure;
+use crate::input::{self, unusable};
 use crate::safety::Kind;
 use crate::threads::Threads;
 use cede_controller::policy::weights::words;
@@ -9,7 +12,6 @@ use cede_controller::{Perspective, Weights};
 use cede_formats::property::{Properties, StateProperty};
 use cede_verify::policy::{self, Settled, Subject};
 use clap::Args;
-use miette::{IntoDiagnostic, WrapErr, miette};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -20,6 +22,9 @@ Exit code 1 if a property is not proved.";
 
 /// The claimed properties of the embedded policy.
 pub(super) const PROPERTIES: &str = include_str!("../../../../docs/safety/policy.toml");
+
+/// What the file of `--properties` should be.
+const PROPERTY: &str = "properties as docs/safety/policy.toml has them";
 
 /// Options of `cede verify policy`.
 #[derive(Args)]
@@ -32,7 +37,7 @@ pub(crate) struct Policy {
     #[arg(long, value_name = "FILE")]
     properties: Option<PathBuf>,
     /// Time limit per property in seconds.
-    #[arg(long, value_name = "SECONDS", default_value_t = 60)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 60, value_parser = seconds())]
     timeout: u64,
     /// Check every proof with the independent checker.
     #[arg(long)]
@@ -56,12 +61,9 @@ impl Policy {
 
     fn properties(&self) -> Result<Vec<StateProperty>, Failure> {
         let Some(path) = &self.properties else {
-            let properties = Properties::read(PROPERTIES).into_diagnostic();
-            return Ok(named(Path::new("docs/safety/policy.toml"), properties)?.property);
+            return properties(Path::new("docs/safety/policy.toml"), PROPERTIES);
         };
-        let text = std::fs::read_to_string(path).into_diagnostic();
-        let properties = text.and_then(|text| Properties::read(&text).into_diagnostic());
-        Ok(named(path, properties)?.property)
+        properties(path, &input::text(path, PROPERTY)?)
     }
 
     fn row<'p>(&self, subject: &Subject<'_>, property: &'p StateProperty) -> PropertyRow<'p> {
@@ -81,8 +83,7 @@ impl Policy {
 impl Check for Policy {
     fn check(&self) -> Result<Checked, Failure> {
         let (place, words) = policy_words(self.weights.as_deref())?;
-        let weights = named(place, Weights::parse(&words).map_err(|e| miette!("{e}")))?;
-        let subject = named(place, Subject::new(weights).into_diagnostic())?;
+        let subject = subject(place, &words)?;
         let perspective = match subject.perspective() {
             Perspective::Joint => "joint",
             Perspective::Ego => "ego",
@@ -113,14 +114,20 @@ pub(super) fn policy_words(path: Option<&Path>) -> Result<(&Path, Vec<u32>), Fai
         let embedded = cede_controller::policy::embedded::words().to_vec();
         return Ok((Path::new("the embedded policy"), embedded));
     };
-    let bytes = named(path, std::fs::read(path).into_diagnostic())?;
-    Ok((path, words(&bytes).collect()))
+    Ok((path, words(&input::bytes(path, WEIGHTS)?).collect()))
 }
 
-pub(super) fn named<T>(path: &Path, result: miette::Result<T>) -> Result<T, Failure> {
-    result
-        .wrap_err_with(|| format!("cannot use {}", path.display()))
-        .map_err(Failure::Input)
+/// The policy of the `words` of a weights file.
+pub(super) fn subject<'w>(path: &Path, words: &'w [u32]) -> Result<Subject<'w>, Failure> {
+    let weights = Weights::parse(words).map_err(|error| unusable(path, error, WEIGHTS))?;
+    Subject::new(weights).map_err(|error| unusable(path, error, "another policy"))
+}
+
+fn properties(path: &Path, text: &str) -> Result<Vec<StateProperty>, Failure> {
+    let properties = Properties::read(text);
+    Ok(properties
+        .map_err(|error| unusable(path, error, PROPERTY))?
+        .property)
 }
 
 /// A property with its result.

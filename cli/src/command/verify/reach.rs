@@ -1,15 +1,14 @@
 //! `cede verify reach`.
 
 use super::checked::{Check, Checked, Finding, open};
-use super::policy::{named, policy_words};
+use super::policy::{policy_words, subject};
+use super::seconds;
 use crate::failure::Failure;
+use crate::input::{self, unusable};
 use crate::safety::Kind;
 use crate::threads::Threads;
-use cede_controller::Weights;
-use cede_verify::policy::Subject;
 use cede_verify::reach::{self, Scenario, Scenarios, Settled, settle};
 use clap::Args;
-use miette::{IntoDiagnostic, miette};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -19,6 +18,9 @@ Starts from all states of a region. Exit code 1 if a scenario's claim is not pro
 
 /// The claims about the embedded policy with its shield.
 pub(super) const SCENARIOS: &str = include_str!("../../../../docs/safety/reach.toml");
+
+/// What the file should be.
+const SCENARIO: &str = "scenarios as docs/safety/reach.toml has them";
 
 /// Options of `cede verify reach`.
 #[derive(Args)]
@@ -31,7 +33,7 @@ pub(crate) struct Reach {
     #[arg(long, value_name = "FILE")]
     scenarios: Option<PathBuf>,
     /// Time limit per scenario in seconds.
-    #[arg(long, value_name = "SECONDS", default_value_t = 120)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 120, value_parser = seconds())]
     timeout: u64,
     #[command(flatten)]
     threads: Threads,
@@ -49,14 +51,9 @@ impl Reach {
 
     fn read(&self) -> Result<Scenarios, Failure> {
         let Some(path) = &self.scenarios else {
-            let scenarios = Scenarios::read(SCENARIOS).into_diagnostic();
-            return named(Path::new("docs/safety/reach.toml"), scenarios);
+            return scenarios(Path::new("docs/safety/reach.toml"), SCENARIOS);
         };
-        let text = std::fs::read_to_string(path).into_diagnostic();
-        named(
-            path,
-            text.and_then(|text| Scenarios::read(&text).into_diagnostic()),
-        )
+        scenarios(path, &input::text(path, SCENARIO)?)
     }
 }
 
@@ -66,8 +63,7 @@ type SettledScenario = (Scenario, Settled);
 impl Check for Reach {
     fn check(&self) -> Result<Checked, Failure> {
         let (place, words) = policy_words(self.weights.as_deref())?;
-        let weights = named(place, Weights::parse(&words).map_err(|e| miette!("{e}")))?;
-        let subject = named(place, Subject::new(weights).into_diagnostic())?;
+        let subject = subject(place, &words)?;
         let limit = Duration::from_secs(self.timeout);
         let settle = |scenario: Scenario| {
             let settled = settle(&subject, &scenario, Instant::now() + limit);
@@ -100,6 +96,10 @@ fn finding(row: &SettledScenario) -> Finding {
     let (scenario, settled) = row;
     let said = format!("{}: {} tubes", word(&settled.finding), settled.tubes);
     Finding::new(Kind::Scenario, &scenario.id, proved(row), said)
+}
+
+fn scenarios(path: &Path, text: &str) -> Result<Scenarios, Failure> {
+    Scenarios::read(text).map_err(|error| unusable(path, error, SCENARIO))
 }
 
 fn word(finding: &reach::Finding) -> &'static str {

@@ -1,12 +1,12 @@
 //! `cede verify shield`: the share of recorded steps that the shield accepts.
 
-use crate::contract::Named;
+use crate::contract::{self, Named};
 use crate::failure::Failure;
 use crate::left_out;
 use crate::report::{Report, command};
 use crate::source::not_empty;
 use cede_controller::{ConflictKind, Contract, ContractBuilder};
-use cede_data::{Dataset, Encounter};
+use cede_data::{Dataset, Encounter, output};
 use cede_sim::transparency::{Swept, Transparency, sweep, transparency};
 use clap::Args;
 use std::io::{self, Write};
@@ -16,6 +16,9 @@ use std::path::PathBuf;
 const HELP: &str = "\
 Exit code 1 if the share of recorded steps that the shield accepts is below 99.5 % at crossings or 99 % at merges
 under the worst-case contract.";
+
+/// The contract with a bar.
+const WORST_CASE: &str = "worst case";
 
 /// Options of `cede verify shield`.
 #[derive(Args)]
@@ -36,47 +39,73 @@ pub(crate) struct Shield {
     /// Also draw these shares on a page: one HTML file.
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
+    /// Print one JSON object instead.
+    #[arg(long)]
+    json: bool,
 }
 
 impl Shield {
     /// Runs the command.
     pub(crate) fn run(self) -> Result<(), Failure> {
+        let contract = contract::or_worst_case(self.contract.as_ref())?;
+        let mut outputs = [&self.sweep, &self.report].into_iter().flatten();
+        outputs.try_for_each(|file| output::check(file))?;
         let data = Dataset::load(&self.data, &self.site)?;
         not_empty(&data)?;
         let encounters: Vec<&Encounter> = data.encounters.iter().collect();
         left_out::tell(&encounters);
-        println!("contract          kind       role    steps  accepted");
-        let mut worst = Vec::new();
         let contracts = match self.contract {
-            Some(Named(contract)) => vec![("as given", contract)],
+            Some(_) => vec![("as given", contract)],
             None => contracts().to_vec(),
         };
-        for (name, contract) in contracts {
-            let rows = transparency(&encounters, contract);
-            for row in &rows {
-                let (kind, role) = (format!("{:?}", row.kind), format!("{:?}", row.role));
-                let share = 100.0 * row.share();
-                println!(
-                    "{name:17} {kind:10} {role:5} {:>7}  {share:6.2} %",
-                    row.steps
-                );
-            }
-            if name == "worst case" {
-                worst = rows;
-            }
+        let judged = |(name, contract)| (name, transparency(&encounters, contract));
+        let rows: Vec<(&str, Vec<Transparency>)> = contracts.into_iter().map(judged).collect();
+        if self.json {
+            let rows: Vec<_> = rows.iter().flat_map(json).collect();
+            println!(
+                "{}",
+                serde_json::json!({ "site": data.site.name, "rows": rows })
+            );
+        } else {
+            print(&rows);
         }
         if let Some(file) = &self.sweep {
-            let rows = sweep(&encounters, self.contract.unwrap_or_default().0)
+            let rows = sweep(&encounters, contract)
                 .map_err(|error| Failure::input(error, "report this as a bug"))?;
-            cede_data::output::write(file, |out| csv(out, &rows))?;
+            output::write(file, |out| csv(out, &rows))?;
         }
         if let Some(file) = &self.report {
             let mut report = Report::showing(Vec::new(), &data, &command());
-            report.sweep(&data, self.contract.unwrap_or_default().0)?;
+            report.sweep(&data, contract)?;
             report.write(file)?;
         }
-        judge(&worst)
+        let worst = rows.iter().find(|(name, _)| *name == WORST_CASE);
+        worst.map_or(Ok(()), |(_, rows)| judge(rows))
     }
+}
+
+fn print(contracts: &[(&str, Vec<Transparency>)]) {
+    println!("contract          kind       role    steps  accepted");
+    for (name, rows) in contracts {
+        for row in rows {
+            let (kind, role) = (format!("{:?}", row.kind), format!("{:?}", row.role));
+            let share = 100.0 * row.share();
+            println!(
+                "{name:17} {kind:10} {role:5} {:>7}  {share:6.2} %",
+                row.steps
+            );
+        }
+    }
+}
+
+fn json((name, rows): &(&str, Vec<Transparency>)) -> Vec<serde_json::Value> {
+    let row = |row: &Transparency| {
+        serde_json::json!({
+            "contract": name, "kind": format!("{:?}", row.kind).to_lowercase(),
+            "role": format!("{:?}", row.role).to_lowercase(), "steps": row.steps, "accepted": row.accepted,
+        })
+    };
+    rows.iter().map(row).collect()
 }
 
 fn csv(out: &mut dyn Write, rows: &[Swept]) -> io::Result<()> {
@@ -106,7 +135,7 @@ fn contracts() -> [(&'static str, Contract); 4] {
     const SENSED: Contract = valid(Contract::builder().position_error(0.3).speed_error(0.3));
     const SLOW: Contract = valid(Contract::builder().follower_reaction(1.0));
     [
-        ("worst case", Contract::WORST_CASE),
+        (WORST_CASE, Contract::WORST_CASE),
         ("no latency", PROMPT),
         ("errors 0.3", SENSED),
         ("reaction 1 s", SLOW),

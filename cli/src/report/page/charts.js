@@ -41,7 +41,7 @@ function lineChart(host, { series, x, y, marks = [], dots = [], height = 220 }) 
   const py = (v) => height - bottom - ((v - y0) / (y1 - y0)) * (height - top - bottom);
 
   host.replaceChildren();
-  const svg = node("svg", { class: "chart", viewBox: `0 0 ${width} ${height}`, role: "img" }, host);
+  const svg = node("svg", { class: "chart", viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": caption(host) }, host);
   for (const t of y.ticks ?? ticks(y0, y1, 5)) {
     node("line", { class: "grid", x1: left, x2: width - right, y1: py(t.value), y2: py(t.value) }, svg);
     node("text", { x: left - 7, y: py(t.value) + 4, "text-anchor": "end" }, svg, t.label);
@@ -73,6 +73,12 @@ function lineChart(host, { series, x, y, marks = [], dots = [], height = 220 }) 
       cursor.setAttribute("x2", px(value));
     },
   };
+}
+
+// What a chart is called: the caption of its figure.
+function caption(host) {
+  const told = host.closest("figure")?.querySelector("figcaption");
+  return told ? words(told) : "";
 }
 
 // Share of values up to x, as steps; `total` counts also those beyond every x.

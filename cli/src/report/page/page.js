@@ -17,11 +17,13 @@ if (report.rows.length) {
   tables(document.getElementById("tables"), report);
 }
 if (report.cases.length) player(report);
+if (report.gallery.length) gallery(report);
 if (report.learning.length) learning(report);
 if (report.distributions.length) distributions(report);
 if (report.interventions.length) interventions(report);
 if (report.sweep.length) sweep(report);
 for (const id of ["results", "words"]) document.getElementById(id).hidden = report.rows.length === 0;
+document.querySelectorAll("figure").forEach(saveButtons);
 document.documentElement.dataset.status = "ready";
 
 function distributions({ distributions, drivers }) {
@@ -58,6 +60,8 @@ function distributions({ distributions, drivers }) {
 function interventions({ interventions, map, cases }) {
   const find = (id) => document.getElementById(id);
   find("shielded").append(...interventions.map((d, i) => new Option(`${d.driver} (${d.block})`, i)));
+  const own = interventions.findIndex((d) => bare(d.driver) === "cede");
+  if (own >= 0) find("shielded").value = own;
   find("shield").hidden = false;
   const draw = () => {
     const { points, classes, steps, overruled } = interventions[find("shielded").value];

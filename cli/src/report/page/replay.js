@@ -1,7 +1,8 @@
 // Episodes from above, and the same along the routes.
 
 const STEP = 0.1;
-const PALETTE = ["#2563eb", "#d97706", "#059669", "#db2777", "#7c3aed", "#0891b2", "#65a30d", "#a16207", "#64748b", "#dc2626"];
+// At least 3:1 against the panel, in light and in dark.
+const PALETTE = Array.from({ length: 10 }, (_, i) => `var(--series-${i})`);
 const PAPER_SIZE = [5, 2];
 
 // Why the shield acts.
@@ -11,6 +12,7 @@ const REASONS = {
   entry: { words: "no safe gap ahead of the other in its lane", tint: "--entry" },
   stop: { words: "just room to stop", tint: "--halt" },
   fallback: { words: "nothing was safe", tint: "--ink" },
+  other: { words: "another reason", tint: "--soft" },
 };
 
 // A driver has one hue, behind the shield too.
@@ -352,13 +354,37 @@ function player(report) {
     const acts = driven.shielded.some((steps) => steps.length > 0);
     return 4 * Number(!meets(c, driven)) + 2 * Number(acts) + Number(driven.first === c.record.first);
   };
-  const best = Math.max(...report.cases.map(telling));
-  // `#case=2` links to the third.
-  const linked = Number(/case=(\d+)/.exec(location.hash)?.[1] ?? NaN);
-  caseSelect.value = linked in report.cases ? linked : report.cases.findIndex((c) => telling(c) === best);
+  const known = report.cases.filter((c) => !c.found);
+  const [first] = (known.length ? known : report.cases).toSorted((a, b) => telling(b) - telling(a));
+  caseSelect.value = report.cases.indexOf(first);
   choose();
+  // What the address asks for; false if it asks for nothing.
+  function follow() {
+    const { place, driver, time } = linked();
+    if (!(place in report.cases)) return false;
+    caseSelect.value = place;
+    slider.value = 0;
+    choose();
+    if (item.drives.some((d) => d.driver === driver)) {
+      driverSelect.value = driver;
+      choose();
+    }
+    if (time >= 0) slider.value = time;
+    draw();
+    return true;
+  }
+  window.addEventListener("hashchange", () => {
+    if (!follow()) return;
+    find("replay").scrollIntoView();
+    find("play").focus();
+    stop();
+    if (!still) toggle();
+  });
+  follow();
   const still = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
-  if (still) {
+  if (linked().time >= 0) {
+    if (!still) toggle();
+  } else if (still) {
     // Somewhere in the middle there is more to see than at the start.
     slider.value = (0.6 * STEP * item.record.length).toFixed(1);
     draw();

@@ -38,7 +38,7 @@ function share(value, interval) {
 
 // The interval on a scale from 0 to 1.
 function whisker(value, [low, high]) {
-  const svg = node("svg", { class: "whisker", width: 64, height: 12, viewBox: "0 0 64 12" });
+  const svg = node("svg", { class: "whisker", width: 64, height: 12, viewBox: "0 0 64 12", "aria-hidden": "true" });
   const x = (v) => 2 + 60 * v;
   node("line", { x1: 2, x2: 62, y1: 6, y2: 6, style: "stroke:var(--line)" }, svg);
   node("line", { x1: x(low), x2: x(high), y1: 6, y2: 6, style: "stroke:var(--soft)", "stroke-width": 2 }, svg);
@@ -61,7 +61,7 @@ function tables(host, { rows, paper }) {
     title.textContent = blockName(block[0]);
     const beside = paper.filter((p) => p.split === block[0].split && block[0].mode === "joint" && block[0].until === "conflict");
     const wrap = document.createElement("div");
-    wrap.className = "scroll";
+    scrollable(wrap, blockName(block[0]));
     wrap.append(table(block, beside));
     host.append(title, wrap);
   }
@@ -108,7 +108,7 @@ function summary(host, { rows }) {
     row.append(th);
   };
   const groups = head.insertRow();
-  cell(groups, "");
+  groups.insertCell();
   for (const shield of shields) cell(groups, shield === "off" ? "without the shield" : `behind the shield${shield === "on" ? "" : ` (${shield})`}`, SUMMARY.length);
   const heads = head.insertRow();
   cell(heads, "driver");
@@ -130,7 +130,7 @@ function summary(host, { rows }) {
     }
   }
   const wrap = document.createElement("div");
-  wrap.className = "scroll";
+  scrollable(wrap, "Results by driver");
   wrap.append(table);
   const title = document.createElement("p");
   title.textContent = `${first.split}: ${first.encounters} encounters, ${first.mode === "joint" ? "one driver for both vehicles" : "a driver for one vehicle at a time"}, ${first.until === "conflict" ? "until the first arrival" : "until both have left"}. Best of each column in bold.`;
@@ -141,6 +141,14 @@ function summary(host, { rows }) {
     dd.textContent = DRIVERS[name];
     return [dt, dd];
   }));
+}
+
+// A box that scrolls sideways, by the keyboard too.
+function scrollable(box, name) {
+  box.className = "scroll";
+  box.tabIndex = 0;
+  box.role = "region";
+  box.ariaLabel = name;
 }
 
 function groupBy(items, key) {
@@ -161,6 +169,7 @@ function table(rows, paper) {
   for (const name of ["driver", "n", ...shown.map((c) => c.head)]) {
     const cell = document.createElement("th");
     cell.textContent = name;
+    cell.scope = "col";
     head.append(cell);
   }
   const body = table.createTBody();
