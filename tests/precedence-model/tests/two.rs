@@ -69,6 +69,13 @@ fn never_both_by_arrival() {
 }
 
 #[test]
+fn never_both_where_the_right_counts_whoever_arrives_first() {
+    is_sound("unsigned", suite::unsigned(suite::turns(1)));
+    is_sound("late", suite::unsigned(suite::late(0).right(0, 1)));
+    is_sound("late second", suite::unsigned(suite::late(0).right(1, 0)));
+}
+
+#[test]
 fn a_turn_that_begins_when_the_other_ends_is_found() {
     let outcome = run("no grace", Watched::<2, NoGrace>::new(suite::turns(0)));
     assert!(outcome.at_once.is_some());
