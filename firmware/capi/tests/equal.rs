@@ -15,7 +15,7 @@ use std::ptr::null_mut;
 use traffic::Traffic;
 
 /// Scenes with 1 to 8 others in turn and every third one under the worst-case contract, and their steps of 0.1 s.
-const SCENES: usize = 48;
+const SCENES: usize = 192;
 const STEPS: usize = 60;
 
 #[test]
