@@ -26,7 +26,11 @@ fn both_interfaces_decide_the_same() {
         let mut random = Random::new(1 + scene as u64);
         let mut traffic = Traffic::new(&mut random, 1 + scene % 8);
         let routes: Vec<u32> = traffic.routes().collect();
-        let header: [u32; HEADER] = [(scene % 8 + 1) as u32, 0, u32::from(scene % 3 != 0)];
+        let header: [u32; HEADER] = [
+            (scene % 8 + 1) as u32,
+            0,
+            u32::from(!scene.is_multiple_of(3)),
+        ];
         let words = [&header, routes.as_slice()].concat();
         let golden = Golden::next(&mut words.as_slice()).unwrap();
         let junction = golden.junction().unwrap();

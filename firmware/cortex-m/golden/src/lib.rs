@@ -80,10 +80,10 @@ impl<'a> Golden<'a> {
     }
 
     /// Number 1 has a rule of precedence.
-    fn contract(&self) -> Contract {
+    const fn contract(&self) -> &'static Contract {
         match self.contract {
-            1 => Contract::ALL_WAY_STOP,
-            _ => Contract::WORST_CASE,
+            1 => &Contract::ALL_WAY_STOP,
+            _ => &Contract::WORST_CASE,
         }
     }
 
@@ -97,7 +97,7 @@ impl<'a> Golden<'a> {
         policy: &Policy<'w>,
         junction: &'j Junction,
     ) -> Result<Approach<'j, 'w>, EnterError> {
-        Drive::new(*policy, self.contract(), Part::Left).enter(junction, EGO)
+        Drive::new(*policy, *self.contract(), Part::Left).enter(junction, EGO)
     }
 
     /// The junction.

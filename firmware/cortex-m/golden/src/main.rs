@@ -38,7 +38,7 @@ fn write(path: &Path, words: &[u32]) -> Result<()> {
 fn scene(policy: &Policy<'_>, random: &mut Random, i: usize) -> Result<Vec<u32>> {
     let others = 1 + i % 8;
     let mut traffic = Traffic::new(random, others);
-    let mut words = vec![others as u32, 0, u32::from(i % 3 != 0)];
+    let mut words = vec![others as u32, 0, u32::from(!i.is_multiple_of(3))];
     words.extend(traffic.routes());
     let golden = Golden::next(&mut words.as_slice());
     let golden = golden.ok_or_else(|| Error::other("no junction at the end"))?;
