@@ -198,7 +198,7 @@ fn json_is_one_value_on_standard_output() {
     ));
     assert_eq!(shield["rows"][0]["contract"], "as given");
     let campaign = json("verify campaign --steps 1");
-    assert_eq!(campaign["rows"].as_array().unwrap().len(), 15);
+    assert_eq!(campaign["setups"].as_array().unwrap().len(), 15);
 }
 
 #[test]

@@ -119,7 +119,8 @@ fn two_sites(folder: &Path) -> Vec<String> {
             names.push(path.file_name().unwrap().to_str().unwrap().to_owned());
         }
     }
-    names.sort();
+    // The crossings first: not every small site has encounters.
+    names.sort_by_key(|name| (!name.contains("-X-"), name.clone()));
     for name in names.split_off(2) {
         std::fs::remove_dir_all(folder.join(name)).unwrap();
     }

@@ -31,7 +31,7 @@ fn the_embedded_policy_goes_out_and_comes_back_to_drive_the_same() {
     let folder = folder.path();
     stdout(folder, "export --format onnx --out policy.onnx");
     let told = stdout(folder, "import --onnx policy.onnx --out back.cede");
-    assert!(told.starts_with("ego policy over the features `scene`, hidden layers 64 wide\n"));
+    assert!(told.starts_with("ego policy over the features `rights`, hidden layers 48 wide\n"));
     assert!(told.ends_with("back.cede\n"));
     let drive = "evaluate --data synthetic --encounters 20 --driver cede --split all --shield both";
     let back = stdout(folder, &format!("{drive} --weights back.cede"));
@@ -64,9 +64,9 @@ fn what_cannot_come_in_is_named() {
         folder,
         "import --onnx policy.onnx --features raw --out p.cede",
     );
-    assert!(text.contains("takes 19 features, `raw` has 8"), "{text}");
+    assert!(text.contains("takes 22 features, `raw` has 8"), "{text}");
     assert!(
-        text.contains("--features raw, route, traffic or scene"),
+        text.contains("--features raw, route, traffic, scene or rights"),
         "{text}"
     );
     assert!(

@@ -84,6 +84,15 @@ pub struct Approach<'j, 'w, const N: usize = MAX_OTHERS> {
     prediction: Option<Prediction>,
 }
 
+/// What is wanted of the ego, in m/s².
+struct Wanted {
+    most: f32,
+    /// At least, for those over whom it has precedence.
+    first: f32,
+    /// With nobody left to meet.
+    free: f32,
+}
+
 /// A track on a path that has a zone ahead with the ego's.
 struct Nearby<'j> {
     number: u16,
@@ -147,8 +156,17 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
     /// Cost: at most `N` passes through the network, and the shield's. The
     /// acceleration is finite and within the contract's, whatever the bits of the observation.
     pub fn decide(&mut self, now: Instant, observation: &Observation<'_>) -> Decision {
-        let first = if observation.ego.speed > SLOW { 0.0 } else { FREE };
-        self.decide_for(now, observation, first, |asked| asked.unwrap_or(FREE))
+        let first = if observation.ego.speed > SLOW {
+            0.0
+        } else {
+            FREE
+        };
+        let wanted = Wanted {
+            most: f32::INFINITY,
+            first,
+            free: FREE,
+        };
+        self.decide_for(now, observation, &wanted)
     }
 
     /// [`Approach::decide`] for a vehicle that has a driver of its own for everything but the others at the junction, of
@@ -160,23 +178,30 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
         observation: &Observation<'_>,
         most: f32,
     ) -> Decision {
-        let within = |asked: f32| if asked < most { asked } else { most };
-        self.decide_for(now, observation, most, |asked| asked.map_or(most, within))
+        let wanted = Wanted {
+            most,
+            first: most,
+            free: most,
+        };
+        self.decide_for(now, observation, &wanted)
     }
 
     fn decide_for(
         &mut self,
         now: Instant,
         observation: &Observation<'_>,
-        first: f32,
-        proposal: impl Fn(Option<f32>) -> f32,
+        wanted: &Wanted,
     ) -> Decision {
         let mut proposed = 0.0;
         if self.shield.is_new(now) {
             // The shield finds a fault again and carries on with its plan.
-            if let Ok(asked) = self.ask(observation, first) {
+            if let Ok(asked) = self.ask(observation, wanted.first) {
                 self.prediction = asked.map(|(_, prediction)| prediction);
-                proposed = proposal(asked.map(|(acceleration, _)| acceleration));
+                proposed = match asked {
+                    None => wanted.free,
+                    Some((acceleration, _)) if acceleration < wanted.most => acceleration,
+                    Some(_) => wanted.most,
+                };
             } else {
                 self.prediction = None;
             }

@@ -3,7 +3,7 @@
 
 const Call = {
     path: 0, rightOfWay: 1, build: 2, named: 3, contract: 4, enter: 5, decide: 6, plan: 7, text: 8, zones: 9, reach: 10,
-    pose: 11, line: 12, gap: 13, forget: 14,
+    pose: 11, line: 12, gap: 13, forget: 14, setLine: 15,
 };
 
 // Numbers of a contract in the controller's order.
@@ -64,8 +64,9 @@ class Controller {
         this.call(Call.path, count);
     }
 
+    // If both arrive at once, `first` goes first.
     rightOfWay(first, second) {
-        this.call(Call.rightOfWay, this.put([{ word: first }, { word: second }]));
+        this.call(Call.rightOfWay, this.put([{ word: first }, { word: second }, { word: 0 }]));
     }
 
     build() {

@@ -4,24 +4,27 @@
 
 // How many decisions there are, and how many of them differ from the host's.
 async function golden({ compileController, Controller, Call, ANSWER }, words) {
-    const POINTS = 8, ROUTE = 4 + 2 * POINTS, VEHICLE = 7, OTHERS = 8, QUESTION = 1 + VEHICLE * (1 + OTHERS);
+    const POINTS = 8, ROUTE = 6 + 2 * POINTS, VEHICLE = 7, OTHERS = 8, QUESTION = 1 + VEHICLE * (1 + OTHERS);
+    const NONE = 0x7fc00000; // no number
     const module = await compileController();
     let at = 0, steps = 0, different = 0;
     while (at < words.length) {
-        const [others, count] = words.subarray(at, at + 2);
-        at += 2;
+        const [others, count, contract] = words.subarray(at, at + 3);
+        at += 3;
         const controller = new Controller(module);
         const ask = (call, question) => {
             controller.words.set(question);
             return controller.call(call, question.length);
         };
         for (let path = 0; path <= others; path++, at += ROUTE) {
-            const [length, width, first, points, ...coordinates] = words.subarray(at, at + ROUTE);
+            const [length, width, first, priority, line, points, ...coordinates] = words.subarray(at, at + ROUTE);
             ask(Call.path, [0, length, width, points, ...coordinates.slice(0, 2 * points)]);
-            if (path > 0 && first === 1) ask(Call.rightOfWay, [0, path]);
-            if (path > 0 && first === 2) ask(Call.rightOfWay, [path, 0]);
+            if (path > 0 && first === 1) ask(Call.rightOfWay, [0, path, priority]);
+            if (path > 0 && first === 2) ask(Call.rightOfWay, [path, 0, priority]);
+            if (line !== NONE) ask(Call.setLine, [path, line]);
         }
         ask(Call.build, []);
+        controller.call(Call.contract, ask(Call.named, [contract]));
         ask(Call.enter, []);
         for (let step = 0; step < count; step++, at += QUESTION + ANSWER) {
             const [millis, ...vehicles] = words.subarray(at, at + QUESTION);

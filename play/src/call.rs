@@ -8,7 +8,8 @@ pub enum Call {
     /// `class, length, width, points, x, y, x, y, …`: adds a path. The ego's is the first one. Class: 0 car, 1 lorry,
     /// 2 bicycle.
     Path = 0,
-    /// `first, second`: vehicles of path `first` go before those of path `second`.
+    /// `first, second, priority`: vehicles of path `first` have the right of way over those of path `second`. Priority: `0`
+    /// if both arrive at once, `1` whoever arrives first, without signs, `2` the same by signs.
     RightOfWay = 1,
     /// Builds the junction.
     Build = 2,
@@ -40,10 +41,12 @@ pub enum Call {
     Gap = 13,
     /// `number`: the track is known to be gone.
     Forget = 14,
+    /// `path, s`: where vehicles of the path wait.
+    SetLine = 15,
 }
 
 impl Call {
-    const ALL: [Self; 15] = [
+    const ALL: [Self; 16] = [
         Self::Path,
         Self::RightOfWay,
         Self::Build,
@@ -59,6 +62,7 @@ impl Call {
         Self::Line,
         Self::Gap,
         Self::Forget,
+        Self::SetLine,
     ];
 
     /// The call with this number.

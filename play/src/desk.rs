@@ -10,7 +10,7 @@ use cede_controller::shield::choice::{GRID, grid};
 use cede_controller::shield::margin;
 use cede_controller::{
     Approach, Bounds, Cause, Class, ConflictKind, Contract, Drive, Instant, JunctionBuilder,
-    Observation, OrientedBox, Part, PathId, Plan, Policy, Route, Track, policy,
+    Observation, OrientedBox, Part, PathId, Plan, Policy, Priority, Route, Track, policy,
 };
 use core::cell::OnceCell;
 use core::fmt::Write;
@@ -117,6 +117,7 @@ impl<'j> Desk<'j> {
             Call::Line => self.line(words, out),
             Call::Gap => gap(words, out),
             Call::Forget => self.forget(words),
+            Call::SetLine => self.set_line(words),
         }
     }
 
@@ -141,7 +142,18 @@ impl<'j> Desk<'j> {
 
     fn right_of_way(&mut self, words: &mut Input<'_>) -> Result<(), Refusal> {
         let (first, second) = (words.path()?, words.path()?);
-        Ok(self.unbuilt()?.right_of_way(first, second)?)
+        let priority = match words.word()? {
+            0 => Priority::FirstCome,
+            1 => Priority::Unsigned,
+            2 => Priority::Signed,
+            _ => return Err(Refusal::Choice),
+        };
+        Ok(self.unbuilt()?.priority(first, second, priority)?)
+    }
+
+    fn set_line(&mut self, words: &mut Input<'_>) -> Result<(), Refusal> {
+        let (path, s) = (words.path()?, words.number()?);
+        Ok(self.unbuilt()?.line(path, s)?)
     }
 
     fn unbuilt(&mut self) -> Result<&mut Builder, Refusal> {

@@ -89,7 +89,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 fn mend(error: &ImportError) -> &'static str {
     match error {
         ImportError::Unstated | ImportError::Inputs { .. } => {
-            "say which with --features raw, route, traffic or scene"
+            "say which with --features raw, route, traffic, scene or rights"
         }
         ImportError::Depth(_) | ImportError::Width { .. } => {
             "train a smaller network, or distil this one"

@@ -117,7 +117,7 @@
  * The version of this interface. A program compares it with cede_abi_version() once, at its start: it grows with every
  * change of a structure, a size, a number or the meaning of a function.
  */
-#define CEDE_ABI_VERSION 2
+#define CEDE_ABI_VERSION 3
 
 /**
  * Alignment of all objects in bytes.
@@ -614,6 +614,43 @@ typedef uint8_t cede_field;
 #endif // __cplusplus
 
 /**
+ * What obliges a vehicle to give way where it enters a junction.
+ */
+enum cede_control
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint8_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    /**
+     * It is not known.
+     */
+    CEDE_CONTROL_UNKNOWN = 0,
+    /**
+     * Nothing: the vehicle is on the major road, or there are no signs.
+     */
+    CEDE_CONTROL_FREE = 1,
+    /**
+     * It gives way.
+     */
+    CEDE_CONTROL_YIELD = 2,
+    /**
+     * It stops and gives way.
+     */
+    CEDE_CONTROL_STOP = 3,
+    /**
+     * It stops, as everybody does: who has stopped first goes first.
+     */
+    CEDE_CONTROL_ALL_WAY_STOP = 4,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum cede_control cede_control;
+#else
+typedef uint8_t cede_control;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
  * How two paths meet.
  */
 enum cede_conflict_kind
@@ -647,7 +684,7 @@ typedef uint8_t cede_conflict_kind;
 #endif // __cplusplus
 
 /**
- * Who goes first if both arrive at once.
+ * Who has the right of way.
  */
 enum cede_right
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -672,6 +709,35 @@ enum cede_right
 typedef enum cede_right cede_right;
 #else
 typedef uint8_t cede_right;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * When a right of way counts.
+ */
+enum cede_priority
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint8_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    /**
+     * If both arrive at once: whoever arrives first goes first, as at an all-way stop.
+     */
+    CEDE_PRIORITY_FIRST_COME = 0,
+    /**
+     * Whoever arrives first, until both rest: then they take turns. Where there are no signs.
+     */
+    CEDE_PRIORITY_UNSIGNED = 1,
+    /**
+     * Whoever arrives first, as signs and markings give it: whoever gives way waits longer before they take turns.
+     */
+    CEDE_PRIORITY_SIGNED = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum cede_priority cede_priority;
+#else
+typedef uint8_t cede_priority;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
@@ -1250,9 +1316,17 @@ typedef struct cede_path_info {
      */
     uint8_t vehicle_class;
     /**
+     * What obliges it to give way.
+     */
+    cede_control control;
+    /**
+     * 1 if the line was set: the ego waits there, and not in the junction.
+     */
+    uint8_t waits_at_line;
+    /**
      * 0.
      */
-    uint8_t reserved[3];
+    uint8_t reserved;
 } cede_path_info;
 
 /**
@@ -1311,17 +1385,17 @@ typedef struct cede_conflict {
      */
     cede_conflict_kind kind;
     /**
-     * Who goes first if both arrive at once.
+     * Who has the right of way.
      */
     cede_right right;
+    /**
+     * When it counts.
+     */
+    cede_priority priority;
     /**
      * How many zones there are.
      */
     uint8_t zone_count;
-    /**
-     * 0.
-     */
-    uint8_t reserved;
     /**
      * The zones, in no particular order.
      */
@@ -1375,6 +1449,17 @@ cede_status cede_approach_decide(struct cede_approach *approach,
                                  uint64_t now_us,
                                  const struct cede_observation *observation,
                                  struct cede_decision *decision);
+
+/**
+ * cede_approach_decide() for a vehicle that has a driver of its own for everything but the others at the junction, of its
+ * speed limit, curves and leader for example: no more than `most` (m/s^2) is proposed, and `most` where nobody is left to
+ * meet who goes first. NaN counts as full braking.
+ */
+cede_status cede_approach_decide_up_to(struct cede_approach *approach,
+                                       uint64_t now_us,
+                                       float most,
+                                       const struct cede_observation *observation,
+                                       struct cede_decision *decision);
 
 /**
  * Whether a plan is safe before control is handed over. CEDE_STATUS_OK, CEDE_STATUS_NOT_READY_FAULT or
@@ -1482,8 +1567,9 @@ cede_status cede_junction_add_variant(struct cede_junction *junction,
                                       struct cede_detail *detail);
 
 /**
- * Sets where vehicles of a path wait: the arc length `s` in m of the footprint's centre. Unless it is set, it is where the
- * footprint comes to the first zone in which the path crosses or merges with any other.
+ * Sets where vehicles of a path wait: the arc length `s` in m of the footprint's centre. An ego that has not passed it does
+ * so only with a plan that clears every zone of a crossing or a merge. Unless it is set, it is where the footprint comes to
+ * the first zone in which the path crosses or merges with any other, and the ego may wait between two zones.
  */
 cede_status cede_junction_set_line(struct cede_junction *junction,
                                    uint8_t path,
@@ -1491,13 +1577,32 @@ cede_status cede_junction_set_line(struct cede_junction *junction,
                                    struct cede_detail *detail);
 
 /**
- * Says that vehicles of path `first` go before those of path `second` if they arrive at once. The last call for two
- * paths counts.
+ * Says that vehicles of path `first` go before those of path `second` if they arrive at once:
+ * cede_junction_set_priority() with CEDE_PRIORITY_FIRST_COME. The last call for two paths counts.
  */
 cede_status cede_junction_set_right_of_way(struct cede_junction *junction,
                                            uint8_t first,
                                            uint8_t second,
                                            struct cede_detail *detail);
+
+/**
+ * Says that vehicles of path `first` have the right of way over those of path `second`, and when it counts: `priority` is
+ * a cede_priority. Whether the shield relies on it is for the contract to say. The last call for two paths counts.
+ */
+cede_status cede_junction_set_priority(struct cede_junction *junction,
+                                       uint8_t first,
+                                       uint8_t second,
+                                       uint8_t priority,
+                                       struct cede_detail *detail);
+
+/**
+ * Says what obliges vehicles of a path to give way: `control` is a cede_control. A policy is told; the shield counts on
+ * nothing of it. CEDE_CONTROL_UNKNOWN unless it is set.
+ */
+cede_status cede_junction_set_control(struct cede_junction *junction,
+                                      uint8_t path,
+                                      uint8_t control,
+                                      struct cede_detail *detail);
 
 /**
  * Builds the junction: works out how each two paths meet. Nothing can be added afterwards. A junction that is refused can
@@ -1624,6 +1729,16 @@ const char *cede_conflict_text(uint8_t kind);
  * What a cede_right says.
  */
 const char *cede_right_text(uint8_t right);
+
+/**
+ * What a cede_priority says.
+ */
+const char *cede_priority_text(uint8_t priority);
+
+/**
+ * What a cede_control says.
+ */
+const char *cede_control_text(uint8_t control);
 
 /**
  * What a CEDE_CLASS_... says.

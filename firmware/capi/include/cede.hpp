@@ -69,6 +69,10 @@ public:
     result set_right_of_way(uint8_t first, uint8_t second) {
         return call(cede_junction_set_right_of_way, get(), first, second);
     }
+    result set_priority(uint8_t first, uint8_t second, cede_priority priority) {
+        return call(cede_junction_set_priority, get(), first, second, priority);
+    }
+    result set_control(uint8_t path, cede_control control) { return call(cede_junction_set_control, get(), path, control); }
     result build() { return call(cede_junction_build, get()); }
 };
 
@@ -82,6 +86,9 @@ public:
     }
     [[nodiscard]] cede_status decide(uint64_t now_us, const cede_observation &seen, cede_decision &decision) {
         return cede_approach_decide(get(), now_us, &seen, &decision);
+    }
+    [[nodiscard]] cede_status decide_up_to(uint64_t now_us, float most, const cede_observation &seen, cede_decision &decision) {
+        return cede_approach_decide_up_to(get(), now_us, most, &seen, &decision);
     }
     result set_contract(const cede_contract &contract) { return call(cede_approach_set_contract, get(), &contract); }
     [[nodiscard]] cede_status set_policy(const policy &policy) { return cede_approach_set_policy(get(), policy.get()); }

@@ -133,12 +133,28 @@ pub unsafe extern "C" fn cede_approach_decide(
     decision: *mut cede_decision,
 ) -> cede_status {
     // SAFETY: the header's contract of pointers.
-    unsafe { decide(approach, now_us, observation, decision) }.into()
+    unsafe { decide(approach, now_us, None, observation, decision) }.into()
+}
+
+/// cede_approach_decide() for a vehicle that has a driver of its own for everything but the others at the junction, of its
+/// speed limit, curves and leader for example: no more than `most` (m/s^2) is proposed, and `most` where nobody is left to
+/// meet who goes first. NaN counts as full braking.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cede_approach_decide_up_to(
+    approach: *mut cede_approach,
+    now_us: u64,
+    most: f32,
+    observation: *const cede_observation,
+    decision: *mut cede_decision,
+) -> cede_status {
+    // SAFETY: the header's contract of pointers.
+    unsafe { decide(approach, now_us, Some(most), observation, decision) }.into()
 }
 
 unsafe fn decide(
     approach: *mut cede_approach,
     now_us: u64,
+    most: Option<f32>,
     observation: *const cede_observation,
     decision: *mut cede_decision,
 ) -> Result<(), cede_status> {
@@ -148,8 +164,9 @@ unsafe fn decide(
         let mut seen = Seen::nothing();
         let read = seen.copy(observation);
         let now = Instant::from_micros(now_us);
-        let decided = with(approach, |approach| {
-            approach.decide(now, &seen.observation())
+        let decided = with(approach, |approach| match most {
+            None => approach.decide(now, &seen.observation()),
+            Some(most) => approach.decide_up_to(now, &seen.observation(), most),
         });
         let result = decided.as_ref().map_or(cede_decision::NONE, Into::into);
         write(decision, result)?;

@@ -9,8 +9,8 @@ use crate::observation::{
 };
 use crate::status::cede_status;
 use cede_controller::{
-    ConflictKind, Footprint, Junction, JunctionBuilder, JunctionError, Path, PathId, RightOfWay,
-    Route, RouteConflict, RouteError, Zone,
+    ConflictKind, Control, Footprint, Junction, JunctionBuilder, JunctionError, Path, PathId,
+    Priority, RightOfWay, Route, RouteConflict, RouteError, Zone,
 };
 use core::ffi::CStr;
 use core::mem::MaybeUninit;
@@ -111,7 +111,7 @@ pub enum cede_conflict_kind {
     Following = 3,
 }
 
-/// Who goes first if both arrive at once.
+/// Who has the right of way.
 #[repr(u8)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum cede_right {
@@ -121,6 +121,34 @@ pub enum cede_right {
     Ego = 1,
     /// The other.
     Other = 2,
+}
+
+/// When a right of way counts.
+#[repr(u8)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum cede_priority {
+    /// If both arrive at once: whoever arrives first goes first, as at an all-way stop.
+    FirstCome = 0,
+    /// Whoever arrives first, until both rest: then they take turns. Where there are no signs.
+    Unsigned = 1,
+    /// Whoever arrives first, as signs and markings give it: whoever gives way waits longer before they take turns.
+    Signed = 2,
+}
+
+/// What obliges a vehicle to give way where it enters a junction.
+#[repr(u8)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum cede_control {
+    /// It is not known.
+    Unknown = 0,
+    /// Nothing: the vehicle is on the major road, or there are no signs.
+    Free = 1,
+    /// It gives way.
+    Yield = 2,
+    /// It stops and gives way.
+    Stop = 3,
+    /// It stops, as everybody does: who has stopped first goes first.
+    AllWayStop = 4,
 }
 
 /// A path of a junction.
@@ -135,8 +163,12 @@ pub struct cede_path_info {
     pub footprint: cede_footprint,
     /// Its class, CEDE_CLASS_...
     pub vehicle_class: u8,
+    /// What obliges it to give way.
+    pub control: cede_control,
+    /// 1 if the line was set: the ego waits there, and not in the junction.
+    pub waits_at_line: u8,
     /// 0.
-    pub reserved: [u8; 3],
+    pub reserved: u8,
 }
 
 /// A stretch of the ego's path and one of the other's in which they can touch; arc lengths in m. An end of 10^6 or -10^6
@@ -172,12 +204,12 @@ pub struct cede_conflict {
     pub other_conflict: f32,
     /// How the paths meet first, along the ego's.
     pub kind: cede_conflict_kind,
-    /// Who goes first if both arrive at once.
+    /// Who has the right of way.
     pub right: cede_right,
+    /// When it counts.
+    pub priority: cede_priority,
     /// How many zones there are.
     pub zone_count: u8,
-    /// 0.
-    pub reserved: u8,
     /// The zones, in no particular order.
     pub zones: [cede_zone; CEDE_MAX_ZONES],
 }
@@ -283,8 +315,9 @@ unsafe fn number(id: PathId, path: *mut u8) -> Result<(), cede_detail> {
     Ok(unsafe { write(path, number) }?)
 }
 
-/// Sets where vehicles of a path wait: the arc length `s` in m of the footprint's centre. Unless it is set, it is where the
-/// footprint comes to the first zone in which the path crosses or merges with any other.
+/// Sets where vehicles of a path wait: the arc length `s` in m of the footprint's centre. An ego that has not passed it does
+/// so only with a plan that clears every zone of a crossing or a merge. Unless it is set, it is where the footprint comes to
+/// the first zone in which the path crosses or merges with any other, and the ego may wait between two zones.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cede_junction_set_line(
     junction: *mut cede_junction,
@@ -297,8 +330,8 @@ pub unsafe extern "C" fn cede_junction_set_line(
     unsafe { told(build_up(junction, set), detail) }
 }
 
-/// Says that vehicles of path `first` go before those of path `second` if they arrive at once. The last call for two
-/// paths counts.
+/// Says that vehicles of path `first` go before those of path `second` if they arrive at once:
+/// cede_junction_set_priority() with CEDE_PRIORITY_FIRST_COME. The last call for two paths counts.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cede_junction_set_right_of_way(
     junction: *mut cede_junction,
@@ -309,6 +342,45 @@ pub unsafe extern "C" fn cede_junction_set_right_of_way(
     let set = |builder: &mut Builder| builder.right_of_way(PathId::new(first), PathId::new(second));
     // SAFETY: the header's contract of pointers.
     unsafe { told(build_up(junction, set), detail) }
+}
+
+/// Says that vehicles of path `first` have the right of way over those of path `second`, and when it counts: `priority` is
+/// a cede_priority. Whether the shield relies on it is for the contract to say. The last call for two paths counts.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cede_junction_set_priority(
+    junction: *mut cede_junction,
+    first: u8,
+    second: u8,
+    priority: u8,
+    detail: *mut cede_detail,
+) -> cede_status {
+    let (first, second) = (PathId::new(first), PathId::new(second));
+    // SAFETY: the header's contract of pointers.
+    let set = |priority| unsafe {
+        build_up(junction, |builder| {
+            builder.priority(first, second, priority)
+        })
+    };
+    let result = priority_of(priority).map_err(cede_detail::from);
+    // SAFETY: the header's contract of pointers.
+    unsafe { told(result.and_then(set), detail) }
+}
+
+/// Says what obliges vehicles of a path to give way: `control` is a cede_control. A policy is told; the shield counts on
+/// nothing of it. CEDE_CONTROL_UNKNOWN unless it is set.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cede_junction_set_control(
+    junction: *mut cede_junction,
+    path: u8,
+    control: u8,
+    detail: *mut cede_detail,
+) -> cede_status {
+    let path = PathId::new(path);
+    // SAFETY: the header's contract of pointers.
+    let set = |control| unsafe { build_up(junction, |builder| builder.control(path, control)) };
+    let result = control_of(control).map_err(cede_detail::from);
+    // SAFETY: the header's contract of pointers.
+    unsafe { told(result.and_then(set), detail) }
 }
 
 /// Builds the junction: works out how each two paths meet. Nothing can be added afterwards. A junction that is refused can
@@ -462,8 +534,34 @@ fn described(path: &Path, length: f32) -> cede_path_info {
             width,
         },
         vehicle_class: class_number(path.class()),
-        reserved: [0; 3],
+        control: match path.control() {
+            Control::Unknown => cede_control::Unknown,
+            Control::Free => cede_control::Free,
+            Control::Yield => cede_control::Yield,
+            Control::Stop => cede_control::Stop,
+            Control::AllWayStop => cede_control::AllWayStop,
+        },
+        waits_at_line: path.waits_at_line().into(),
+        reserved: 0,
     }
+}
+
+fn priority_of(number: u8) -> Result<Priority, cede_status> {
+    const FIRST_COME: u8 = cede_priority::FirstCome as u8;
+    const UNSIGNED: u8 = cede_priority::Unsigned as u8;
+    const SIGNED: u8 = cede_priority::Signed as u8;
+    match number {
+        FIRST_COME => Ok(Priority::FirstCome),
+        UNSIGNED => Ok(Priority::Unsigned),
+        SIGNED => Ok(Priority::Signed),
+        _ => Err(cede_status::UnknownChoice),
+    }
+}
+
+fn control_of(number: u8) -> Result<Control, cede_status> {
+    // In the order of cede_control.
+    let known = Control::ALL.get(usize::from(number));
+    known.copied().ok_or(cede_status::UnknownChoice)
 }
 
 impl From<&RouteConflict> for cede_conflict {
@@ -481,8 +579,12 @@ impl From<&RouteConflict> for cede_conflict {
                 RightOfWay::Ego => cede_right::Ego,
                 RightOfWay::Other => cede_right::Other,
             },
+            priority: match conflict.priority {
+                Priority::FirstCome => cede_priority::FirstCome,
+                Priority::Unsigned => cede_priority::Unsigned,
+                Priority::Signed => cede_priority::Signed,
+            },
             zone_count: conflict.zones().count() as u8,
-            reserved: 0,
             zones,
         }
     }
@@ -616,6 +718,20 @@ pub(crate) const RIGHT: &[(u8, &CStr)] = &[
     (cede_right::Unsettled as u8, c"unsettled"),
     (cede_right::Ego as u8, c"the ego"),
     (cede_right::Other as u8, c"the other"),
+];
+
+pub(crate) const PRIORITY: &[(u8, &CStr)] = &[
+    (cede_priority::FirstCome as u8, c"who comes first"),
+    (cede_priority::Unsigned as u8, c"without signs"),
+    (cede_priority::Signed as u8, c"by signs"),
+];
+
+pub(crate) const CONTROL: &[(u8, &CStr)] = &[
+    (cede_control::Unknown as u8, c"not known"),
+    (cede_control::Free as u8, c"free"),
+    (cede_control::Yield as u8, c"yield"),
+    (cede_control::Stop as u8, c"stop"),
+    (cede_control::AllWayStop as u8, c"all-way stop"),
 ];
 
 pub(crate) const CLASS: &[(u8, &CStr)] = &[

@@ -2,7 +2,7 @@
 
 use crate::contract::CONTRACT_FIELD;
 use crate::decision::{ACTION, BREACH, CAUSE, FAULT, FIELD, REASON, SUBJECT};
-use crate::junction::{CLASS, CONFLICT, RIGHT};
+use crate::junction::{CLASS, CONFLICT, CONTROL, PRIORITY, RIGHT};
 use crate::status::STATUS;
 use core::ffi::{CStr, c_char};
 
@@ -75,6 +75,18 @@ pub extern "C" fn cede_conflict_text(kind: u8) -> *const c_char {
 #[unsafe(no_mangle)]
 pub extern "C" fn cede_right_text(right: u8) -> *const c_char {
     text(RIGHT, right)
+}
+
+/// What a cede_priority says.
+#[unsafe(no_mangle)]
+pub extern "C" fn cede_priority_text(priority: u8) -> *const c_char {
+    text(PRIORITY, priority)
+}
+
+/// What a cede_control says.
+#[unsafe(no_mangle)]
+pub extern "C" fn cede_control_text(control: u8) -> *const c_char {
+    text(CONTROL, control)
 }
 
 /// What a CEDE_CLASS_... says.

@@ -40,6 +40,7 @@ proptest! {
         sound in 0..3_usize,
         times in any::<[u64; 3]>(),
         is_there in any::<bool>(),
+        most in any::<u32>(),
     ) {
         let contract = worst_case();
         let mut world = World::new(&contract);
@@ -54,9 +55,15 @@ proptest! {
             observation.tracks = null();
         }
         for now in times {
-            let (_, decision) = world.decide(now, &observation);
+            let (_, mut decision) = world.decide(now, &observation);
             prop_assert!(admissible(&contract, decision.acceleration), "{decision:?}");
             prop_assert!(!decision.margin.is_nan());
+            // SAFETY: as the header says.
+            unsafe {
+                let (later, most) = (now.wrapping_add(100_000), f32::from_bits(most));
+                cede_approach_decide_up_to(&mut world.approach, later, most, &observation, &mut decision);
+            }
+            prop_assert!(admissible(&contract, decision.acceleration), "{decision:?}");
             // SAFETY: as the header says.
             let proposal = unsafe {
                 cede_approach_ready(&world.approach, now, &observation, null_mut());
@@ -138,7 +145,7 @@ proptest! {
     fn any_junction(
         points in prop::collection::vec(bytes::<cede_point>(), 0..70),
         footprint in bytes::<cede_footprint>(),
-        [class, of_path, first, second] in any::<[u8; 4]>(),
+        [class, of_path, first, second, priority, control] in any::<[u8; 6]>(),
         [tolerance, line, s] in any::<[u32; 3]>(),
     ) {
         let mut world = World::empty();
@@ -156,6 +163,10 @@ proptest! {
             cede_junction_add_variant(junction, of_path % 3, class % 4, &footprint, &mut path, none);
             cede_junction_set_line(junction, of_path, line, none);
             cede_junction_set_right_of_way(junction, first, second, none);
+            let known = cede_junction_set_priority(junction, first % 3, second % 3, priority, none);
+            prop_assert_eq!(known == cede_status::UnknownChoice, priority > cede_priority::Signed as u8);
+            let known = cede_junction_set_control(junction, of_path % 3, control, none);
+            prop_assert_eq!(known == cede_status::UnknownChoice, control > cede_control::AllWayStop as u8);
             cede_junction_set_tolerance(junction, tolerance);
             cede_junction_build(junction, none);
             let mut pose = cede_pose::default();
@@ -184,7 +195,8 @@ proptest! {
         let mut texts = vec![cede_status_text(number)];
         for text in [
             cede_cause_text, cede_action_text, cede_reason_text, cede_fault_text, cede_subject_text, cede_field_text,
-            cede_breach_text, cede_contract_field_text, cede_conflict_text, cede_right_text, cede_class_text,
+            cede_breach_text, cede_contract_field_text, cede_conflict_text, cede_right_text, cede_priority_text,
+            cede_control_text, cede_class_text,
         ] {
             texts.push(text(byte));
         }
@@ -244,6 +256,14 @@ fn null_and_misaligned_pointers_have_a_status() {
             cede_approach_proposal(approach, &observation, null_mut()),
             null_pointer
         );
+        let up_to = |approach, observation, decision| {
+            cede_approach_decide_up_to(approach, 2_000_000, 1.0, observation, decision)
+        };
+        assert_eq!(up_to(null_mut(), &observation, &mut decision), null_pointer);
+        assert_eq!(decision.acceleration, -CEDE_LAST_RESORT_BRAKING);
+        assert_eq!(up_to(approach, &observation, null_mut()), null_pointer);
+        assert_eq!(up_to(approach, null(), &mut decision), null_pointer);
+        assert_eq!(decision.cause, cede_cause::Fallback);
         assert_eq!(cede_approach_plan(approach, null_mut()), null_pointer);
         assert_eq!(cede_approach_set_policy(approach, null()), null_pointer);
         assert_eq!(
@@ -318,6 +338,14 @@ fn null_and_misaligned_pointers_have_a_status() {
             ),
             null_pointer
         );
+        assert_eq!(
+            cede_junction_set_priority(null_mut(), 0, 1, 0, null_mut()),
+            null_pointer
+        );
+        assert_eq!(
+            cede_junction_set_control(null_mut(), 0, 0, null_mut()),
+            null_pointer
+        );
         assert_eq!(cede_junction_build(null_mut(), null_mut()), null_pointer);
         assert_eq!(cede_junction_check(null()), null_pointer);
         assert_eq!(cede_junction_count(null(), null_mut()), null_pointer);
@@ -341,6 +369,13 @@ fn what_is_refused_is_named() {
         let (left, _) = world.junction();
         let line = cede_junction_set_line(&mut world.junction, left, 1.0, null_mut());
         assert_eq!(line, cede_status::JunctionBuilt);
+        let control = cede_junction_set_control(&mut world.junction, left, 1, null_mut());
+        assert_eq!(control, cede_status::JunctionBuilt);
+        let odd = cede_junction_set_control(&mut world.junction, left, 5, &mut detail);
+        assert_eq!(
+            (odd, detail.status),
+            (cede_status::UnknownChoice, cede_status::UnknownChoice)
+        );
         assert_eq!(world.drive(&worst_case()), OK);
         assert_eq!(world.enter(9), cede_status::EnterPath);
 
@@ -368,7 +403,69 @@ fn what_is_refused_is_named() {
         let long = cede_junction_set_line(&mut world.junction, 0, 1000.0, &mut detail);
         assert_eq!((long, detail.value), (cede_status::JunctionLine, 1000.0));
         assert!(detail.high > 80.0 && detail.high < 100.0);
+        let itself = cede_junction_set_priority(&mut world.junction, 0, 0, 2, &mut detail);
+        assert_eq!((itself, detail.path), (cede_status::JunctionRightOfWay, 0));
+        let odd = cede_junction_set_priority(&mut world.junction, 0, 0, 3, &mut detail);
+        assert_eq!(odd, cede_status::UnknownChoice);
         assert_eq!(world.enter(0), cede_status::JunctionNotBuilt);
+    }
+}
+
+#[test]
+fn what_was_set_is_what_the_junction_says() {
+    use cede_control::{AllWayStop, Free, Stop, Unknown, Yield};
+    use cede_priority::{FirstCome, Signed, Unsigned};
+    let mut world = World::empty();
+    let junction = &raw mut world.junction;
+    for control in [Unknown, Free, Yield, Stop, AllWayStop] {
+        for priority in [FirstCome, Unsigned, Signed] {
+            // SAFETY: as the header says.
+            unsafe {
+                assert_eq!(cede_junction_init(junction), OK);
+                let mine = world.path(&common::points(&common::MINE));
+                let theirs = world.path(&common::points(&common::THEIRS));
+                for set in [
+                    cede_junction_set_control(junction, mine, control as u8, null_mut()),
+                    cede_junction_set_priority(junction, theirs, mine, priority as u8, null_mut()),
+                    cede_junction_set_line(junction, mine, 30.0, null_mut()),
+                    cede_junction_build(junction, null_mut()),
+                ] {
+                    assert_eq!(set, OK);
+                }
+                let mut paths: [cede_path_info; 2] = std::mem::zeroed();
+                assert_eq!(cede_junction_path(junction, mine, &mut paths[0]), OK);
+                assert_eq!(cede_junction_path(junction, theirs, &mut paths[1]), OK);
+                assert_eq!(paths.map(|path| path.control), [control, Unknown]);
+                assert_eq!(paths.map(|path| path.waits_at_line), [1, 0]);
+                assert_eq!(paths[0].line, 30.0);
+                let mut conflict: cede_conflict = std::mem::zeroed();
+                assert_eq!(
+                    cede_junction_conflict(junction, mine, theirs, &mut conflict),
+                    OK
+                );
+                assert_eq!(
+                    (conflict.right, conflict.priority),
+                    (cede_right::Other, priority)
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn no_more_is_proposed_than_the_driver_wants() {
+    let mut world = World::new(&worst_case());
+    for (now, most, acceleration) in [
+        (1_000_000, 0.25, 0.25),
+        (1_100_000, -1.5, -1.5),
+        (1_200_000, f32::NAN, -3.0),
+    ] {
+        let mut decision = no_decision();
+        // SAFETY: as the header says.
+        let status = unsafe {
+            cede_approach_decide_up_to(&mut world.approach, now, most, &seen(&[]), &mut decision)
+        };
+        assert_eq!((status, decision.acceleration), (OK, acceleration));
     }
 }
 

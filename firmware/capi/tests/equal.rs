@@ -7,15 +7,15 @@ mod random;
 mod traffic;
 
 use cede::*;
-use cede_controller::Policy;
-use cede_golden::{ANSWER, Golden, QUESTION, Question, ROUTE, VEHICLE, answer, approach};
-use common::{OK, World, worst_case};
+use cede_controller::{Contract, Policy};
+use cede_golden::{ANSWER, Golden, HEADER, QUESTION, Question, ROUTE, VEHICLE, answer};
+use common::{OK, World, no_decision};
 use random::Random;
 use std::ptr::null_mut;
 use traffic::Traffic;
 
-/// Scenes with 1 to 8 others in turn, and their steps of 0.1 s.
-const SCENES: usize = 48;
+/// Scenes with 1 to 8 others in turn and every third one under the worst-case contract, and their steps of 0.1 s.
+const SCENES: usize = 192;
 const STEPS: usize = 60;
 
 #[test]
@@ -26,25 +26,39 @@ fn both_interfaces_decide_the_same() {
         let mut random = Random::new(1 + scene as u64);
         let mut traffic = Traffic::new(&mut random, 1 + scene % 8);
         let routes: Vec<u32> = traffic.routes().collect();
-        let header = [(scene % 8 + 1) as u32, 0];
+        let header: [u32; HEADER] = [
+            (scene % 8 + 1) as u32,
+            0,
+            u32::from(!scene.is_multiple_of(3)),
+        ];
         let words = [&header, routes.as_slice()].concat();
-        let junction = Golden::next(&mut words.as_slice())
-            .unwrap()
-            .junction()
-            .unwrap();
-        let mut rust = approach(&policy, &junction).unwrap();
-        let mut c = world(routes.as_chunks().0);
+        let golden = Golden::next(&mut words.as_slice()).unwrap();
+        let junction = golden.junction().unwrap();
+        let mut rust = golden.approach(&policy, &junction).unwrap();
+        let contract = match scene % 3 {
+            0 => Contract::WORST_CASE,
+            _ => Contract::ALL_WAY_STOP,
+        };
+        let mut c = world(routes.as_chunks().0, &contract);
         for step in 0..STEPS {
             let asked = traffic.observe(&mut random);
             let question = Question::new(&asked);
-            let by_rust = rust.decide(question.now, &question.observation());
+            // A driver of its own, now and then.
+            let most = (step % 4 == 3).then(|| random.within(3.0));
+            let by_rust = match most {
+                None => rust.decide(question.now, &question.observation()),
+                Some(most) => rust.decide_up_to(question.now, &question.observation(), most),
+            };
             let (ego, tracks) = observed(&asked);
             let seen = cede_observation {
                 ego,
                 tracks: tracks.as_ptr(),
                 track_count: tracks.len() as u32,
             };
-            let (status, by_c) = c.decide(question.now.micros(), &seen);
+            let (status, by_c) = match most {
+                None => c.decide(question.now.micros(), &seen),
+                Some(most) => up_to(&mut c, question.now.micros(), most, &seen),
+            };
             assert_eq!(status, OK);
             assert_eq!(
                 words_of(&by_c),
@@ -64,13 +78,13 @@ fn both_interfaces_decide_the_same() {
 }
 
 /// The golden junction, by C.
-fn world(routes: &[[u32; ROUTE]]) -> Box<World> {
+fn world(routes: &[[u32; ROUTE]], contract: &Contract) -> Box<World> {
     let mut world = World::empty();
     // SAFETY: as the header says.
     unsafe {
         assert_eq!(cede_junction_init(&mut world.junction), OK);
-        for [length, width, right, count, points @ ..] in routes {
-            let [length, width] = [length, width].map(|&word| f32::from_bits(word));
+        for [length, width, right, priority, line, count, points @ ..] in routes {
+            let [length, width, line] = [length, width, line].map(|&word| f32::from_bits(word));
             let points = points.as_chunks().0.iter();
             let points: Vec<cede_point> = points
                 .take(*count as usize)
@@ -87,17 +101,33 @@ fn world(routes: &[[u32; ROUTE]]) -> Box<World> {
                 null_mut(),
             );
             assert_eq!(status, OK);
+            let (junction, priority) = (&raw mut world.junction, *priority as u8);
             let _of_itself_is_refused = match right {
-                1 => cede_junction_set_right_of_way(&mut world.junction, 0, path, null_mut()),
-                2 => cede_junction_set_right_of_way(&mut world.junction, path, 0, null_mut()),
+                1 => cede_junction_set_priority(junction, 0, path, priority, null_mut()),
+                2 => cede_junction_set_priority(junction, path, 0, priority, null_mut()),
                 _ => OK,
             };
+            let _none_is_refused = cede_junction_set_line(junction, path, line, null_mut());
         }
         assert_eq!(cede_junction_build(&mut world.junction, null_mut()), OK);
     }
-    assert_eq!(world.drive(&worst_case()), OK);
+    assert_eq!(world.drive(&plain(contract)), OK);
     assert_eq!(world.enter(0), OK);
     world
+}
+
+fn up_to(
+    world: &mut World,
+    now_us: u64,
+    most: f32,
+    seen: &cede_observation,
+) -> (cede_status, cede_decision) {
+    let mut decision = no_decision();
+    // SAFETY: as the header says.
+    let status = unsafe {
+        cede_approach_decide_up_to(&mut world.approach, now_us, most, seen, &mut decision)
+    };
+    (status, decision)
 }
 
 /// What the golden words say.

@@ -32,7 +32,7 @@ fn the_header_is_up_to_date() {
 #[test]
 fn every_number_has_a_text() {
     type Text = extern "C" fn(u8) -> *const std::ffi::c_char;
-    let texts: [(&str, Text); 10] = [
+    let texts: [(&str, Text); 12] = [
         ("CEDE_CAUSE_", cede::cede_cause_text),
         ("CEDE_ACTION_", cede::cede_action_text),
         ("CEDE_REASON_KIND_", cede::cede_reason_text),
@@ -43,6 +43,8 @@ fn every_number_has_a_text() {
         ("CEDE_CONTRACT_FIELD_", cede::cede_contract_field_text),
         ("CEDE_CONFLICT_KIND_", cede::cede_conflict_text),
         ("CEDE_RIGHT_", cede::cede_right_text),
+        ("CEDE_PRIORITY_", cede::cede_priority_text),
+        ("CEDE_CONTROL_", cede::cede_control_text),
     ];
     let header = std::fs::read_to_string(here("include/cede.h")).unwrap();
     let mut numbers = 0;

@@ -26,7 +26,8 @@ int main()
     done = done && drive.init(policy, contract, cede::part::left) && junction.init() == CEDE_STATUS_OK &&
            junction.add_path(mine, cede::vehicle_class::car, car, left) &&
            junction.add_path(theirs, cede::vehicle_class::car, car, oncoming) &&
-           junction.set_right_of_way(oncoming, left) && junction.build() && approach.enter(drive, junction, left);
+           junction.set_priority(oncoming, left, CEDE_PRIORITY_SIGNED) && junction.set_control(left, CEDE_CONTROL_YIELD) &&
+           junction.build() && approach.enter(drive, junction, left);
 
     cede_track other{};
     other.number = 17;
@@ -38,7 +39,8 @@ int main()
     const cede_observation seen{{15.0f, 6.0f, {{-25.0f, -2.0f}, {1.0f, 0.0f}}}, &other, 1};
     cede_decision decision;
     done = done && approach.ready(1000000, seen) == CEDE_STATUS_OK &&
-           approach.decide(1000000, seen, decision) == CEDE_STATUS_OK;
+           approach.decide(1000000, seen, decision) == CEDE_STATUS_OK &&
+           approach.decide_up_to(1100000, 0.5f, seen, decision) == CEDE_STATUS_OK;
     std::printf("C++: %s\n", done ? cede_cause_text(decision.cause) : "failed");
     return done ? 0 : 1;
 }

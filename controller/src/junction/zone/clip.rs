@@ -85,10 +85,10 @@ pub(super) fn meet(a: &Motion, b: &Motion) -> Option<Patch> {
     for limit in &limits {
         let range = limit.range(a.length, b.length);
         if range.to > limit.radius {
-            cut(&mut polygon, |p| limit.radius - limit.at(p));
+            cut(&mut polygon, limit, 1.0);
         }
         if range.from < -limit.radius {
-            cut(&mut polygon, |p| limit.radius + limit.at(p));
+            cut(&mut polygon, limit, -1.0);
         }
     }
     bounds(a, b, &polygon)
@@ -143,9 +143,11 @@ fn rectangle(width: f32, height: f32) -> Polygon {
     polygon
 }
 
-/// Leaves the part of a convex polygon in which `inside` is not negative (Sutherland and Hodgman, 1974).
+/// Leaves the part of a convex polygon in which the value of `limit`, times `side` (1 or -1), is no more than its radius
+/// (Sutherland and Hodgman, 1974).
 #[inline(never)]
-fn cut(polygon: &mut Polygon, inside: impl Fn(Point) -> f32) {
+fn cut(polygon: &mut Polygon, limit: &Limit, side: f32) {
+    let inside = |p| limit.radius - side * limit.at(p);
     let mut kept = Polygon::new();
     // A cut by a line adds at most one corner, and 4 + 8 fit in the capacity. If rounding made it more,
     // the polygon would stay as it is: larger, not smaller.

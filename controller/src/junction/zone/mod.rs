@@ -135,7 +135,7 @@ pub(crate) type Zones = [Option<Zone>; MAX_ZONES];
 /// 12 corners for each at which the footprints touch.
 pub(crate) fn zones(ego: &Body<'_>, other: &Body<'_>) -> Zones {
     let mut patches = [None; MAX_ZONES];
-    near_pieces(ego, other, |a, b| meet_stages(&mut patches, a, b));
+    near_pieces(ego, other, &mut |a, b| meet_stages(&mut patches, a, b));
     let (ego, other) = (ego.footprint(), other.footprint());
     patches.map(|patch| patch.map(|patch| patch.zone(ego, other)))
 }
@@ -145,7 +145,7 @@ pub(crate) fn zones(ego: &Body<'_>, other: &Body<'_>) -> Zones {
 pub(crate) fn zone_with_itself(body: &Body<'_>) -> Option<Zone> {
     let mut patches = [None; MAX_ZONES];
     // The half in which the ego is ahead is the same, mirrored.
-    near_pieces(body, body, |a, b| {
+    near_pieces(body, body, &mut |a, b| {
         if a.straight().arc <= b.straight().arc {
             meet_stages(&mut patches, a, b);
         }

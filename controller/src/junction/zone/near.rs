@@ -54,7 +54,8 @@ fn discs_near(a: &Piece, b: &Piece, reach: f32) -> bool {
 
 /// Calls `meet` for all pairs of pieces, of `a` and of `b`, at which the footprints may touch, and for
 /// some at which they cannot.
-pub(super) fn near_pieces(a: &Body<'_>, b: &Body<'_>, mut meet: impl FnMut(&Stage, &Stage)) {
+// Not generic: once in flash.
+pub(super) fn near_pieces(a: &Body<'_>, b: &Body<'_>, meet: &mut dyn FnMut(&Stage, &Stage)) {
     let reach = a.reach() + b.reach();
     let (points, others) = (a.polyline.points(), b.polyline.points());
     for of_a in chunks(a.polyline.pieces()) {

@@ -1,7 +1,7 @@
 //! The golden file: junctions, what is observed on the way through them, and what the host decides, as 32-bit words.
 //!
-//! Junction after junction: the number of others and of steps, a route for each vehicle with the ego's first
-//! ([`ROUTE`] words each), then for each step the question ([`QUESTION`] words) and the decision
+//! Junction after junction: the number of others, of steps and of the contract, a route for each vehicle with the ego's
+//! first ([`ROUTE`] words each), then for each step the question ([`QUESTION`] words) and the decision
 //! ([`ANSWER`] words). Host and image read it by this code. Numbers are bit patterns, so that what is
 //! no number is asked about as well.
 #![no_std]
@@ -14,7 +14,7 @@ pub use answer::{ANSWER, answer};
 use cede_controller::geometry::unit;
 use cede_controller::{
     Approach, Class, Contract, Drive, EnterError, Footprint, Instant, JunctionError, Observation,
-    Part, PathId, Point, Policy, Pose, Route, RouteError, Track, Vehicle,
+    Part, PathId, Point, Policy, Pose, Priority, Route, RouteError, Track, Vehicle,
 };
 
 /// The paths of the ego and of each other; nobody but the ego is driven.
@@ -24,9 +24,12 @@ pub type Junction = cede_controller::Junction<{ 1 + OTHERS }, { (1 + OTHERS) * P
 pub const OTHERS: usize = 8;
 /// Points of a route, at most.
 pub const POINTS: usize = 8;
-/// Words of a route: length and width of its vehicle, who goes first (0 unsettled, 1 the ego, 2 the
-/// other), the number of points, and the points.
-pub const ROUTE: usize = 4 + 2 * POINTS;
+/// Words before those of the routes.
+pub const HEADER: usize = 3;
+/// Words of a route: length and width of its vehicle, who has the right of way (0 unsettled, 1 the ego, 2 the
+/// other), when it counts (0 if both arrive at once, 1 without signs, 2 by signs), the line (none, if it is no number), the
+/// number of points, and the points.
+pub const ROUTE: usize = 6 + 2 * POINTS;
 /// Words of a vehicle: whether it is there, s, speed, x, y, and the direction's x and y.
 pub const VEHICLE: usize = 7;
 /// Words of a question: milliseconds of the clock, the ego and the others.
@@ -55,6 +58,7 @@ impl core::error::Error for Wrong {}
 /// A junction of the golden file.
 #[derive(Clone, Copy, Debug)]
 pub struct Golden<'a> {
+    contract: u32,
     routes: &'a [[u32; ROUTE]],
     /// Observation and decision of each step.
     pub steps: &'a [[u32; QUESTION + ANSWER]],
@@ -63,15 +67,37 @@ pub struct Golden<'a> {
 impl<'a> Golden<'a> {
     /// Takes a junction from the front of `words`; `None` at their end.
     pub fn next(words: &mut &'a [u32]) -> Option<Self> {
-        let (&[others, steps], rest) = words.split_first_chunk()?;
+        let (&[others, steps, contract], rest) = words.split_first_chunk::<HEADER>()?;
         let (routes, rest) = rest.split_at_checked((usize::try_from(others).ok()? + 1) * ROUTE)?;
         let steps = usize::try_from(steps).ok()? * (QUESTION + ANSWER);
         let (steps, rest) = rest.split_at_checked(steps)?;
         *words = rest;
         Some(Self {
+            contract,
             routes: routes.as_chunks().0,
             steps: steps.as_chunks().0,
         })
+    }
+
+    /// Number 1 has a rule of precedence.
+    const fn contract(&self) -> &'static Contract {
+        match self.contract {
+            1 => &Contract::ALL_WAY_STOP,
+            _ => &Contract::WORST_CASE,
+        }
+    }
+
+    /// The approach that is asked, as the left-turner.
+    ///
+    /// # Errors
+    /// If the ego cannot enter.
+    #[inline(never)]
+    pub fn approach<'j, 'w>(
+        &self,
+        policy: &Policy<'w>,
+        junction: &'j Junction,
+    ) -> Result<Approach<'j, 'w>, EnterError> {
+        Drive::new(*policy, *self.contract(), Part::Left).enter(junction, EGO)
     }
 
     /// The junction.
@@ -86,13 +112,19 @@ impl<'a> Golden<'a> {
             let route = route(words).map_err(Wrong::Route)?;
             let path = builder.path(&route, Class::Car, footprint(words));
             let path = path.map_err(Wrong::Junction)?;
-            let settled = match words {
-                [_, _, 1, ..] => builder.right_of_way(EGO, path),
-                [_, _, 2, ..] => builder.right_of_way(path, EGO),
+            let [_, _, right, priority, line, ..] = *words;
+            let priority = match priority {
+                1 => Priority::Unsigned,
+                2 => Priority::Signed,
+                _ => Priority::FirstCome,
+            };
+            let settled = match right {
+                1 => builder.priority(EGO, path, priority),
+                2 => builder.priority(path, EGO, priority),
                 _ => Ok(()),
             };
-            // The ego has no right of way over itself.
-            let _ = settled;
+            // The ego has no right of way over itself, and not every path has a line.
+            let _ = settled.and(builder.line(path, f32::from_bits(line)));
         }
         builder.build().map_err(Wrong::Junction)
     }
@@ -101,21 +133,9 @@ impl<'a> Golden<'a> {
 /// The ego's path.
 pub const EGO: PathId = PathId::new(0);
 
-/// The approach that is asked: within the worst-case contract, as the left-turner.
-///
-/// # Errors
-/// If the ego cannot enter.
-#[inline(never)]
-pub fn approach<'j, 'w>(
-    policy: &Policy<'w>,
-    junction: &'j Junction,
-) -> Result<Approach<'j, 'w>, EnterError> {
-    Drive::new(*policy, Contract::WORST_CASE, Part::Left).enter(junction, EGO)
-}
-
 #[inline(never)]
 fn route(words: &[u32; ROUTE]) -> Result<Route<POINTS>, RouteError> {
-    let [_, _, _, count, points @ ..] = words;
+    let [_, _, _, _, _, count, points @ ..] = words;
     let count = usize::try_from(*count).unwrap_or(POINTS);
     let points = points.as_chunks().0.iter().take(count);
     Route::new(points.map(|[x, y]| point(*x, *y)))

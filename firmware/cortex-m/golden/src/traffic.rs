@@ -19,6 +19,8 @@ struct Vehicle {
     points: Vec<Point>,
     route: Route<POINTS>,
     right_of_way: u32,
+    priority: u32,
+    line: f32,
     there: bool,
     s: f32,
     speed: f32,
@@ -84,6 +86,12 @@ impl Vehicle {
             points,
             route,
             right_of_way: random.word() % 3,
+            priority: random.word() % 3,
+            line: if random.once_in(2) {
+                30.0 + random.within(6.0)
+            } else {
+                f32::NAN
+            },
             there: !random.once_in(6),
             s: 20.0 + random.within(20.0),
             speed: 5.0 + random.within(5.0),
@@ -96,8 +104,10 @@ impl Vehicle {
         words[0] = 5.0_f32.to_bits();
         words[1] = 2.0_f32.to_bits();
         words[2] = self.right_of_way;
-        words[3] = self.points.len() as u32;
-        for (place, point) in words[4..].as_chunks_mut().0.iter_mut().zip(&self.points) {
+        words[3] = self.priority;
+        words[4] = self.line.to_bits();
+        words[5] = self.points.len() as u32;
+        for (place, point) in words[6..].as_chunks_mut().0.iter_mut().zip(&self.points) {
             *place = [point.x.to_bits(), point.y.to_bits()];
         }
         words

@@ -12,7 +12,7 @@ mod stack;
 use cede_controller::policy::embedded;
 use cede_controller::policy::weights::Aligned;
 use cede_controller::{Approach, Decision, Mlp, Policy};
-use cede_golden::{Golden, Junction, QUESTION, Question, Wrong, answer, approach};
+use cede_golden::{Golden, Junction, QUESTION, Question, Wrong, answer};
 use cortex_m_rt::entry;
 use cortex_m_semihosting::debug;
 use counter::{Counter, Range};
@@ -88,7 +88,7 @@ impl Tally {
         golden: &Golden<'_>,
         junction: &Junction,
     ) -> Option<()> {
-        let approach = &mut approach(policy, junction).ok()?;
+        let approach = &mut golden.approach(policy, junction).ok()?;
         stack::paint();
         for step in golden.steps {
             let (question, expected) = step.split_first_chunk()?;
