@@ -106,8 +106,8 @@ pub use geometry::{Footprint, Point, Pose, UnitVector, Vector};
 pub use instant::Instant;
 pub use junction::{
     CONFLICT_RADIUS, Class, ConflictKind, Control, Junction, JunctionBuilder, JunctionError,
-    MAX_OTHERS, Path, PathId, Polyline, Priority, RightOfWay, Route, RouteConflict, RouteError, Span, Way,
-    Zone,
+    MAX_OTHERS, Path, PathId, Polyline, Priority, RightOfWay, Route, RouteConflict, RouteError,
+    Span, Way, Zone,
 };
 pub use observation::{Candidate, MAX_CANDIDATES, Observation, Track, Vehicle};
 pub use policy::{

@@ -217,13 +217,15 @@ pub(super) fn of<'z, R: Rules>(
     other: &Other,
 ) -> impl Iterator<Item = (&'z Zone, Hazard)> {
     let zones = way.conflict(other.path).map(RouteConflict::zones);
-    let arrives = contract
-        .precedence
-        .map_or(FAR, |rule| arrival(way, rule, other.path) - other.bounds.s.to);
-    (0_u8..).zip(zones.into_iter().flatten()).filter_map(move |(index, zone)| {
-        let hazard = hazard::<R>(contract, (index, zone), ego, other, arrives)?;
-        Some((zone, hazard))
-    })
+    let arrives = contract.precedence.map_or(FAR, |rule| {
+        arrival(way, rule, other.path) - other.bounds.s.to
+    });
+    (0_u8..)
+        .zip(zones.into_iter().flatten())
+        .filter_map(move |(index, zone)| {
+            let hazard = hazard::<R>(contract, (index, zone), ego, other, arrives)?;
+            Some((zone, hazard))
+        })
 }
 
 /// Arc length (m) at which the ego waits for `other` before the crossing `zone`: where crossings of the two follow each other without
@@ -366,7 +368,8 @@ pub(super) fn granted(
 
 /// Arc length (m) at which a vehicle of `path` arrives.
 fn arrival(way: Way<'_>, rule: Precedence, path: PathId) -> f32 {
-    way.path(path).map_or(FAR, |path| path.line() - rule.distance)
+    way.path(path)
+        .map_or(FAR, |path| path.line() - rule.distance)
 }
 
 /// Notes for each lane that the ego shares with `other` whether it is ahead there, and the other keeps its distance

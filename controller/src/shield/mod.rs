@@ -233,7 +233,9 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
     pub fn goes_before(&self, number: u16) -> bool {
         let mut claims = (self.tracks.iter().filter(|other| other.number == number))
             .map(|other| other.claims == precedence::ALL);
-        claims.next().is_some_and(|first| first && claims.all(|it| it))
+        claims
+            .next()
+            .is_some_and(|first| first && claims.all(|it| it))
     }
 
     /// Assumes `contract` from the next decision on. The remembered plan is kept if it is safe under it.
@@ -508,9 +510,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
                 if ego.is_none() {
                     right.in_turns = RightOfWay::Unsettled;
                 }
-                other
-                    .pair
-                    .pass::<R>(contract, rule, right, &self.presence);
+                other.pair.pass::<R>(contract, rule, right, &self.presence);
             }
         }
         for other in self.tracks.iter_mut() {

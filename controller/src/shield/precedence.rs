@@ -7,8 +7,8 @@ use super::contract::{Contract, Precedence};
 use super::rules::Rules;
 use super::waiting::{Presence, dip};
 use crate::instant::micros;
-use crate::junction::{PathId, Priority, RightOfWay, RouteConflict};
 use crate::junction::zone::Zone;
+use crate::junction::{PathId, Priority, RightOfWay, RouteConflict};
 use core::cmp::Ordering;
 
 /// The zones in which the ego has precedence, one bit each.

@@ -378,7 +378,10 @@ fn precedence_opens_a_lane_once_the_ego_has_arrived() {
         hazards.iter().next().map(|hazard| hazard.passage)
     };
     let arrival = site.path(EGO).unwrap().line() - Precedence::ALL_WAY_STOP.distance;
-    assert!(matches!(passage(arrival - 0.1), Some(Passage::Ahead { .. })));
+    assert!(matches!(
+        passage(arrival - 0.1),
+        Some(Passage::Ahead { .. })
+    ));
     assert_eq!(passage(arrival + 0.1), None);
 }
 

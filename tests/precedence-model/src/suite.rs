@@ -24,7 +24,10 @@ pub fn two(disturbances: u8) -> Vec<Named<2>> {
         ("unsigned", unsigned(turns(disturbances))),
         ("unsigned, misses", unsigned(misses(disturbances))),
         ("unsigned, late", unsigned(late(disturbances).right(0, 1))),
-        ("unsigned, late second", unsigned(late(disturbances).right(1, 0))),
+        (
+            "unsigned, late second",
+            unsigned(late(disturbances).right(1, 0)),
+        ),
     ];
     for (name, tie) in [("arrivals", 0), ("ties of 1", 1), ("ties of 2", 2)] {
         all.push((name, arrivals(tie, disturbances).right(0, 1)));

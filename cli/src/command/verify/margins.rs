@@ -52,8 +52,7 @@ pub(crate) struct Margins {
 }
 
 /// What to do about a bound that is not shown.
-const MEND: &str =
-    "more --boxes sharpen the bounds, a larger `slack` of the contract covers them";
+const MEND: &str = "more --boxes sharpen the bounds, a larger `slack` of the contract covers them";
 
 /// A predicate under a contract, with its bound.
 struct MarginRow {

@@ -203,7 +203,11 @@ fn stay_out(
 ) -> f64 {
     let (ego, me) = (meeting.ego, meeting.me);
     let mut limit = wanted;
-    for area in meeting.areas.iter().filter(|area| ego_arrived || !area.lane) {
+    for area in meeting
+        .areas
+        .iter()
+        .filter(|area| ego_arrived || !area.lane)
+    {
         let over = ego.s >= area.ego[1] || me.s >= area.other[1];
         // Arc lengths of the controller are f32: their places are off by some micrometres.
         let edge = area.other[0] - 1e-3;

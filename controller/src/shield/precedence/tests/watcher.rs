@@ -6,9 +6,9 @@ use super::super::super::rules::Rules;
 use super::super::super::waiting::{Presence, RestState, Sighting};
 use super::super::{ALL, PairMemory, Right, ZoneSet};
 use crate::instant::Instant;
-use crate::junction::{Priority, RightOfWay};
 use crate::junction::conflict::ConflictKind;
 use crate::junction::zone::{FAR, Span, Zone};
+use crate::junction::{Priority, RightOfWay};
 
 /// Where both wait (m); the zone begins right behind it.
 pub(super) const LINE: f32 = 60.0;
