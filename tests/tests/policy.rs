@@ -120,7 +120,11 @@ fn worse_policies_are_refuted_by_witnesses_that_hold_when_they_are_run() {
             biases.iter_mut().chain(columns).for_each(|x| *x = -*x);
         }
     });
-    let no_biases = changed(|_, biases, _| biases.fill(0.0));
+    let mirrored = changed(|layer, _, columns| {
+        if layer == 0 {
+            columns.iter_mut().for_each(|x| *x = -*x);
+        }
+    });
     let steep = changed(|layer, _, columns| {
         if layer == 3 {
             columns.iter_mut().for_each(|x| *x *= 4.0);
@@ -128,7 +132,7 @@ fn worse_policies_are_refuted_by_witnesses_that_hold_when_they_are_run() {
     });
     for (name, words) in [
         ("sign of the last layer", flipped),
-        ("no biases", no_biases),
+        ("sign of the inputs", mirrored),
         ("four times as steep", steep),
         ("seed 1 without claims", unclaimed(1)),
         ("seed 2 without claims", unclaimed(2)),

@@ -11,7 +11,7 @@ mod stack;
 
 use cede_controller::policy::embedded;
 use cede_controller::policy::weights::Aligned;
-use cede_controller::{Approach, Decision, Mlp, Policy};
+use cede_controller::{Approach, Decision, Policy, Weights};
 use cede_golden::{Golden, Junction, QUESTION, Question, Wrong, answer};
 use cortex_m_rt::entry;
 use cortex_m_semihosting::debug;
@@ -129,14 +129,17 @@ impl Tally {
     }
 }
 
-/// Instructions of a network of the paper's shape, 8-64-64-64-4, over any weights and any inputs.
+/// Inputs of the embedded network.
+const INPUTS: usize = 22;
+
+/// Instructions of the embedded network, over any inputs.
 #[inline(never)]
 fn network(counter: &mut Counter, weights: &[u32]) -> Option<Range> {
-    let network = Mlp::new(weights.get(16..16 + Mlp::words(8, 64))?, 8, 64)?;
+    let weights = Weights::parse(weights).ok()?;
     let mut range = Range::EMPTY;
-    for words in GOLDEN.0.as_chunks::<8>().0.iter().take(1000) {
+    for words in GOLDEN.0.as_chunks::<INPUTS>().0.iter().take(1000) {
         let inputs = words.map(f32::from_bits);
-        range.add(counter.count(|| network.forward(&inputs)).1);
+        range.add(counter.count(|| weights.network().forward(&inputs)).1);
     }
     Some(range)
 }
