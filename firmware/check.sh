@@ -86,7 +86,7 @@ ram=$(value "RAM to decide, bytes")
 preparing=$(value "RAM to prepare a junction, bytes")
 echo "flash with weights, bytes: $flash (of $max_flash)"
 network=$(value "instructions of the network, most")
-echo "network 8-64-64-64-4, instructions for each of its 2 x 8,960 multiplications and additions: $(awk "BEGIN { printf \"%.2f\", $network / 17920 }")"
+echo "network 22-48-48-48-4, instructions for each of its 2 x 5,856 multiplications and additions: $(awk "BEGIN { printf \"%.2f\", $network / 11712 }")"
 [ "$flash" -le $max_flash ] || fail "more than $max_flash bytes of flash"
 [ "$ram" -le $max_ram ] || fail "more than $max_ram bytes of RAM to decide"
 [ "$preparing" -le $max_ram ] || fail "more than $max_ram bytes of RAM to prepare a junction"

@@ -136,7 +136,7 @@ fn a_new_site_is_drafted_from_its_tracks() {
     let folder = folder.path();
     let made = ["data", "synthesize", "--out", "made", "--encounters", "600"];
     cede(folder, &made).success();
-    for (site, arms) in [("SYN-T-AWS-17", 3), ("SYN-X-AWS-1", 4)] {
+    for (site, arms) in [("SYN-T-AWS-17", 3), ("SYN-X-AWS-3", 4)] {
         let data = format!("made/{site}");
         let out = format!("{site}.toml");
         let draft = ["data", "new-site", "--data", &data, "--out", &out];
