@@ -110,6 +110,13 @@ impl<const N: usize> Setting<N> {
         self
     }
 
+    /// The right of way counts whoever arrives first.
+    #[must_use]
+    pub const fn unsigned(mut self) -> Self {
+        self.priority = Priority::Unsigned;
+        self
+    }
+
     /// What vehicle `one` knows of itself and `two`.
     #[must_use]
     pub fn right_of(&self, one: usize, two: usize) -> Right {

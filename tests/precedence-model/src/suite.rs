@@ -1,7 +1,6 @@
 //! The searches that are made.
 
 use crate::setting::{Approach, Setting};
-use cede_controller::Priority;
 
 /// Periods of patience: a turn of the first round must not be over before it is taken, by one who has
 /// perhaps rested a few periods longer than surely.
@@ -21,12 +20,12 @@ pub fn two(disturbances: u8) -> Vec<Named<2>> {
         ("zone", zone(disturbances)),
         ("jitter", jitter(disturbances)),
         ("creeping", creeping(disturbances)),
-        ("unsigned", unsigned(turns(disturbances))),
-        ("unsigned, misses", unsigned(misses(disturbances))),
-        ("unsigned, late", unsigned(late(disturbances).right(0, 1))),
+        ("unsigned", turns(disturbances).unsigned()),
+        ("unsigned, misses", misses(disturbances).unsigned()),
+        ("unsigned, late", late(disturbances).right(0, 1).unsigned()),
         (
             "unsigned, late second",
-            unsigned(late(disturbances).right(1, 0)),
+            late(disturbances).right(1, 0).unsigned(),
         ),
     ];
     for (name, tie) in [("arrivals", 0), ("ties of 1", 1), ("ties of 2", 2)] {
@@ -34,15 +33,6 @@ pub fn two(disturbances: u8) -> Vec<Named<2>> {
     }
     all.push(("arrivals of equals", arrivals(1, disturbances)));
     all
-}
-
-/// The same where the right of way counts whoever arrives first.
-#[must_use]
-pub fn unsigned<const N: usize>(setting: Setting<N>) -> Setting<N> {
-    Setting {
-        priority: Priority::Unsigned,
-        ..setting
-    }
 }
 
 /// Both rest, go a little and rest again.
@@ -166,7 +156,7 @@ pub fn three(disturbances: u8) -> Vec<Named<3>> {
         ..turns.clone()
     };
     let cycle = turns.clone().right(2, 0);
-    let sides = unsigned(cycle.clone());
+    let sides = cycle.clone().unsigned();
     vec![
         ("turns", turns),
         ("turns of a cycle", cycle),

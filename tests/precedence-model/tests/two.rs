@@ -70,9 +70,9 @@ fn never_both_by_arrival() {
 
 #[test]
 fn never_both_where_the_right_counts_whoever_arrives_first() {
-    is_sound("unsigned", suite::unsigned(suite::turns(1)));
-    is_sound("late", suite::unsigned(suite::late(0).right(0, 1)));
-    is_sound("late second", suite::unsigned(suite::late(0).right(1, 0)));
+    is_sound("unsigned", suite::turns(1).unsigned());
+    is_sound("late", suite::late(0).right(0, 1).unsigned());
+    is_sound("late second", suite::late(0).right(1, 0).unsigned());
 }
 
 #[test]

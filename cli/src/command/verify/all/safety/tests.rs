@@ -42,10 +42,10 @@ fn a_requirement_without_evidence_is_found() {
         file.requirements[0].open = None;
     });
     caught("SR-01: names no code", |file, _| {
-        file.requirements[0].code.clear()
+        file.requirements[0].code.clear();
     });
     caught("SR-01: serves no goal", |file, _| {
-        file.requirements[0].goals.clear()
+        file.requirements[0].goals.clear();
     });
 }
 
@@ -91,7 +91,7 @@ fn evidence_that_does_not_exist_is_found() {
         ("records = ['docs/gone.md']", "no file docs/gone.md"),
     ] {
         caught(expected, |file, _| {
-            file.requirements[0].evidence = evidence(names)
+            file.requirements[0].evidence = evidence(names);
         });
     }
 }
@@ -123,10 +123,10 @@ fn identifiers_that_are_not_defined_or_defined_twice_are_found() {
         file.requirements[0].rests_on.push("AOU-99".to_owned());
     });
     caught("SR-02: is defined twice", |file, _| {
-        file.requirements[0].id = "SR-02".to_owned()
+        file.requirements[0].id = "SR-02".to_owned();
     });
     caught("SR1: is not of the form SR-nn", |file, _| {
-        file.requirements[0].id = "SR1".to_owned()
+        file.requirements[0].id = "SR1".to_owned();
     });
     // The documents still use it.
     caught("docs/safety/README.md: SR-54 is not defined", |file, _| {
@@ -142,7 +142,7 @@ fn identifiers_that_are_not_defined_or_defined_twice_are_found() {
 #[test]
 fn gaps_between_hazards_goals_requirements_and_assumptions_are_found() {
     caught("H-01: has no goal", |file, _| {
-        file.hazards.hazard[0].goals.clear()
+        file.hazards.hazard[0].goals.clear();
     });
     caught("SG-02: no requirement serves it", |file, _| {
         for requirement in &mut file.requirements {
@@ -154,7 +154,7 @@ fn gaps_between_hazards_goals_requirements_and_assumptions_are_found() {
         assumption.unwrap().unseen = None;
     });
     caught("AOU-01: its monitors have no test", |file, _| {
-        file.assumptions[0].tests.clear()
+        file.assumptions[0].tests.clear();
     });
     caught("AOU-01: no requirement rests on it", |file, _| {
         for requirement in &mut file.requirements {
