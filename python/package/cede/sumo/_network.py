@@ -25,6 +25,9 @@ TYPES = (
 STOPS = "sw"
 """States of a connection at which a vehicle stops before it goes: a stop sign, an all-way stop."""
 
+CONTROLS = {"m": "yield", "s": "stop", "w": "all-way-stop"}
+"""What obliges a vehicle of a connection to give way, by SUMO's state; elsewhere no sign does."""
+
 DIRECTIONS = {"l": "left", "L": "left", "t": "left", "r": "right", "R": "right"}
 """Where a connection turns, by SUMO's letter: a turn at all, slight ones included, is indicated."""
 
@@ -163,6 +166,7 @@ class Network:
         for connection in connections:
             way = _Way.along(self._lanes(node, connection), self.length)
             kinds = {"kind": "car", "length": self.length, "width": self.width, "line": way.line}
+            kinds["control"] = CONTROLS.get(connection.getState(), "free")
             try:
                 path = builder.path(_simplified(way.centre), **kinds)
             except Error as wrong:
