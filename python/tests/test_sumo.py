@@ -88,21 +88,38 @@ def test_the_profile_brings_light_traffic_through_an_all_way_stop(tmp_path):
     assert (shielded["collisions"], shielded["stuck"], shielded["breaches"]) == (0, 0, 0)
 
 
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("driver", ["profile", "cede"])
-def test_nobody_is_stuck_where_everybody_is_driven(tmp_path, kind, driver):
-    summary = run(netconvert(tmp_path, kind), driver=driver, time=200.0, demand=200.0)
+def is_through(net, driver, arrivals):
+    """Nobody is hit or stuck, and so many arrive of those that arrive with SUMO's own drivers."""
+    summary = run(net, driver=driver, time=200.0, demand=200.0)
     assert (summary["collisions"], summary["stuck"]) == (0, 0)
-    sumo = run(netconvert(tmp_path, kind), driver="sumo", time=200.0, demand=200.0)
-    assert summary["arrived"] >= {"profile": 0.95, "cede": 0.4}[driver] * sumo["arrived"]
+    sumo = run(net, driver="sumo", time=200.0, demand=200.0)
+    assert summary["arrived"] >= arrivals * sumo["arrived"]
 
 
-@pytest.mark.parametrize("intent", ["hidden", "indicated", "known"])
-def test_turns_need_not_be_known(tmp_path, intent):
+@pytest.mark.parametrize("kind", KINDS)
+def test_nobody_is_stuck_where_the_profile_drives_everybody(tmp_path, kind):
+    is_through(netconvert(tmp_path, kind), "profile", 0.95)
+
+
+# Without signs some of the policy's are (docs/python.md).
+@pytest.mark.parametrize("kind", ["allway_stop", "priority", "priority_stop", "zipper"])
+def test_nobody_is_stuck_where_the_policy_drives_everybody(tmp_path, kind):
+    is_through(netconvert(tmp_path, kind), "cede", 0.75)
+
+
+@pytest.mark.parametrize("intent", ["indicated", "known"])
+def test_turns_are_believed(tmp_path, intent):
     net = netconvert(tmp_path, "priority")
     summary = run(net, driver="profile", intent=intent, time=200.0, demand=150.0, seed=1)
     assert (summary["collisions"], summary["stuck"]) == (0, 0)
     assert summary["arrived"] > 15
+
+
+def test_turns_need_not_be_known(tmp_path):
+    net = netconvert(tmp_path, "priority")
+    summary = run(net, driver="profile", intent="hidden", time=200.0, demand=150.0, seed=1)
+    assert summary["collisions"] == 0
+    assert summary["arrived"] > 10
 
 
 def test_the_right_of_way_is_that_of_the_signs(tmp_path):
