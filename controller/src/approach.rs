@@ -301,13 +301,15 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
 }
 
 impl Nearby<'_> {
-    /// Whether the two have yet to meet: in some zone neither has passed it. One that is ahead in a
-    /// lane that they share from the start has been met once either has entered that lane: it leads.
+    /// Whether the two have yet to meet: in some zone neither has passed it. In a lane that they share they have met
+    /// once either has reached the conflict point: it leads.
     fn meets(&self, ego: &Vehicle) -> bool {
         let conflict = self.conflict;
         conflict.zones().any(|zone| {
             let (ego_end, other_end) = match zone.kind {
-                ConflictKind::Following => (conflict.ego_conflict, conflict.other_conflict),
+                ConflictKind::Following | ConflictKind::Merging => {
+                    (conflict.ego_conflict, conflict.other_conflict)
+                }
                 _ => (zone.ego.to, zone.other.to),
             };
             ego.s < ego_end && self.vehicle.s < other_end

@@ -161,6 +161,14 @@ class World {
         return wanted + away * (1 - left) * lag / TICK;
     }
 
+    // Metres in which the ego can stop, errors of its sensors and the next command included.
+    stopping() {
+        const { latency, egoLag, egoAcceleration, egoBraking, positionError } = this.contract;
+        const time = PERIOD + latency + egoLag;
+        const speed = this.ego.speed + egoAcceleration * time;
+        return 2 * positionError + speed * time + speed * speed / (2 * egoBraking);
+    }
+
     // The same one, or who comes after it when it has left.
     replaced(other) {
         const end = this.lines[other.path].length - 1;
@@ -174,7 +182,7 @@ class World {
         // Nobody comes into sight of an ego that is, or has planned to be, in its way, or only just out of it: duty U3 of
         // the manual.
         const { go, margin } = this.decision;
-        const surprised = go !== 0 || margin < 0.02 || occupied(this, other, 0.5).length > 0;
+        const surprised = go !== 0 || margin < 0.02 || occupied(this, other, this.stopping() + 0.5).length > 0;
         if (blocked || surprised || this.time < other.left + AWAY) return other;
         return this.join({ ...this.site.crowd[other.seat], seat: other.seat, s: 0, speed: other.wanted });
     }

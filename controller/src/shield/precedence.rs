@@ -170,8 +170,8 @@ impl PairMemory {
         if R::ends(perhaps, surely, begins, patience) {
             self.turn = Turn::Past;
         }
-        // Of one who may have rested for ever only the other's rest is counted. If both may have, or if who comes first
-        // is told from how long either rested, it is nobody's turn.
+        // The rest of the pair is that of the one whose rest is known. It is nobody's turn if neither is known, or if
+        // both are needed to tell who comes first.
         let counted = perhaps < u16::MAX
             && (right.in_turns != RightOfWay::Unsettled
                 || mine.perhaps < u16::MAX && theirs.perhaps < u16::MAX);

@@ -330,9 +330,6 @@ class Bridge:
         if car.movement is not None:
             stretch = next((s for s in car.movement.stretches if s.lane == car.lane), None)
             car.on_path = stretch is not None and self._put(car, car.movement, stretch)
-            # The policy is made for what is before it: who merges behind it is none of its matter.
-            if self.settings.driver == "cede" and car.s >= car.movement.clear:
-                car.on_path = False
             if car.on_path and (ahead in (None, car.site) or car.s < car.movement.clear):
                 return
         if car.shield is not None and (ahead is not None or not car.on_path):
