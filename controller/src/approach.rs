@@ -6,6 +6,7 @@ use crate::instant::Instant;
 use crate::junction::{ConflictKind, Junction, MAX_OTHERS, Path, PathId, RouteConflict, Way};
 use crate::observation::{Observation, Track, Vehicle};
 use crate::policy::Policy;
+use crate::policy::features::arrival;
 use crate::policy::pair::{Pair, Part, VehicleState};
 use crate::policy::svo;
 use crate::policy::traffic::{NearbyVehicle, TrafficContext};
@@ -244,12 +245,11 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
         nearby: &Vec<Nearby<'j>, N>,
         first: f32,
     ) -> Option<(f32, Prediction)> {
-        let mut proposal: Option<(f32, Prediction)> = None;
         let mine = way.path(way.ego())?;
+        let (mut critical, mut pair) = (None, None);
         for other in nearby.iter().filter(|other| other.meets(ego)) {
             let traffic = traffic(ego, nearby, other.number).nearest(self.around);
-            let last_svo = self.orientation(other.number);
-            let pair = Pair {
+            let seen = Pair {
                 ego: VehicleState {
                     leader: traffic.leader,
                     crosser: traffic.crosser,
@@ -259,24 +259,29 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
                 kind: other.conflict.kind,
                 right_of_way: other.conflict.right_of_way,
                 part: self.part,
-                last_svo,
+                last_svo: self.orientation(other.number),
             };
-            let svo = pair.svo();
+            let svo = seen.svo();
             self.remember(other.number, svo, nearby);
-            let [mut acceleration, expected] = self.policy.act(&pair);
-            if acceleration < first && self.shield.goes_before(other.number) {
-                acceleration = first;
-            }
-            if proposal.is_none_or(|(least, _)| acceleration < least) {
-                let prediction = Prediction {
-                    other: other.number,
-                    svo,
-                    acceleration: expected,
-                };
-                proposal = Some((acceleration, prediction));
+            let urgency = Urgency {
+                waits: self.shield.goes_before(other.number),
+                arrives: arrival(&seen.other),
+            };
+            if critical.is_none_or(|least| urgency.precedes(least)) {
+                (critical, pair) = (Some(urgency), Some((other.number, svo, seen)));
             }
         }
-        proposal
+        let (urgency, (other, svo, pair)) = critical.zip(pair)?;
+        let [mut acceleration, expected] = self.policy.act(&pair);
+        if acceleration < first && urgency.waits {
+            acceleration = first;
+        }
+        let prediction = Prediction {
+            other,
+            svo,
+            acceleration: expected,
+        };
+        Some((acceleration, prediction))
     }
 
     /// The ego's SVO towards track `number` at the last step; the first one, if there was none.
@@ -297,6 +302,25 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
         }
         // As many as there are places are nearby, this one among them.
         let _ = self.orientations.push((number, svo));
+    }
+}
+
+/// How soon the ego has to mind another: whoever waits for it comes last, and of the rest whoever arrives first comes first.
+#[derive(Clone, Copy, PartialEq)]
+struct Urgency {
+    /// Whether the ego has precedence over it.
+    waits: bool,
+    /// Seconds to the conflict point at its present speed.
+    arrives: f32,
+}
+
+impl Urgency {
+    fn precedes(self, other: Self) -> bool {
+        if self.waits == other.waits {
+            self.arrives < other.arrives
+        } else {
+            other.waits
+        }
     }
 }
 

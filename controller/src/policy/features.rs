@@ -249,7 +249,7 @@ fn route<R: Elementary>(pair: &Pair<R>) -> [R; 14] {
 }
 
 /// Seconds to the conflict point at the present speed.
-fn arrival<R: Elementary>(vehicle: &VehicleState<R>) -> R {
+pub(crate) fn arrival<R: Elementary>(vehicle: &VehicleState<R>) -> R {
     let speed = R::of(CREEP).max(vehicle.speed);
     (vehicle.distance / speed).within(HORIZON)
 }

@@ -104,13 +104,11 @@ impl PairMemory {
         right: Right,
         ego: &Presence,
     ) -> u8 {
-        let mine = right.of_way == RightOfWay::Ego;
         match self.turn {
             Turn::First => {
-                let tie = (u64::from(rule.tie) + 1) * micros(contract.period);
                 let first = match right.priority {
-                    Priority::FirstCome => ego.arrival.goes_first(self.other.arrival, tie, mine),
-                    Priority::Unsigned | Priority::Signed => mine,
+                    Priority::FirstCome => self.came_first(contract, rule, right.of_way, ego),
+                    Priority::Unsigned | Priority::Signed => right.of_way == RightOfWay::Ego,
                 };
                 if first { ALL } else { 0 }
             }
@@ -175,8 +173,13 @@ impl PairMemory {
         let counted = perhaps < u16::MAX
             && (right.in_turns != RightOfWay::Unsettled
                 || mine.perhaps < u16::MAX && theirs.perhaps < u16::MAX);
-        // The first turn is the one's who gives way, the second the other's, and so on.
-        let owner = self.first(contract, right.in_turns, ego) == Some(turn % 2 == 1);
+        // The first turn is the one's who came first, which is an order of any number of vehicles. Of two that still
+        // rest, the second is the one's who gives way, the third the other's, and so on.
+        let owner = if turn == 0 {
+            self.came_first(contract, rule, right.in_turns, ego)
+        } else {
+            self.first(contract, right.in_turns, ego) == Some(turn % 2 == 0)
+        };
         if surely == begins.saturating_add(R::grace(contract)) && counted && owner {
             self.turn = Turn::Ego;
         }
@@ -186,6 +189,19 @@ impl PairMemory {
     pub fn forget(&mut self) {
         self.other.forget();
         self.turn = Turn::Past;
+    }
+
+    /// Whether the ego certainly arrived before the other; in a tie, whether it has the right of way.
+    fn came_first(
+        &self,
+        contract: &Contract,
+        rule: Precedence,
+        right_of_way: RightOfWay,
+        ego: &Presence,
+    ) -> bool {
+        let tie = (u64::from(rule.tie) + 1) * micros(contract.period);
+        let mine = right_of_way == RightOfWay::Ego;
+        ego.arrival.goes_first(self.other.arrival, tie, mine)
     }
 
     /// Whether the ego comes before the other while both rest, so that the other knows it, too: by the right of
