@@ -54,8 +54,8 @@ impl Right {
             of_way: right_of_way,
             priority,
             in_turns: match priority {
-                Priority::FirstCome | Priority::Signed => right_of_way,
-                Priority::Unsigned => by_number,
+                Priority::FirstCome | Priority::Unsigned => by_number,
+                Priority::Signed => right_of_way,
             },
         }
     }
@@ -175,11 +175,8 @@ impl PairMemory {
                 || mine.perhaps < u16::MAX && theirs.perhaps < u16::MAX);
         // The first turn is the one's who came first, which is an order of any number of vehicles. Of two that still
         // rest, the second is the one's who gives way, the third the other's, and so on.
-        let owner = if turn == 0 {
-            self.came_first(contract, rule, right.in_turns, ego)
-        } else {
-            self.first(contract, right.in_turns, ego) == Some(turn % 2 == 0)
-        };
+        // The first two turns are the one's who comes second, the next two the other's, and so on.
+        let owner = self.first(contract, right.in_turns, ego) == Some((turn / 2) % 2 == 1);
         if surely == begins.saturating_add(R::grace(contract)) && counted && owner {
             self.turn = Turn::Ego;
         }

@@ -12,7 +12,7 @@ import time
 from dataclasses import dataclass, field
 from typing import Any
 
-from .._cede import Contract, Drive, Error, Policy, Shield, Track
+from .._cede import Contract, Drive, Error, Junction, Policy, Shield, Track
 from ._demand import write_demand
 from ._measures import CRITICAL, STANDING, STUCK, Measures
 from ._network import MOST_CANDIDATES, STOPS, Movement, Network, Site, Stretch
@@ -26,6 +26,10 @@ _INDICATORS = {0: "straight", 1: "right", 2: "left"}
 
 AT_LINE = 2.0
 """Metres before its line from which a vehicle that stands is at it."""
+HEADWAY = 1.0
+"""Seconds that a vehicle wishes to keep to its leader."""
+STANDSTILL = 2.5
+"""Metres to the leader at rest, SUMO's `minGap`, which SUMO's gaps leave out."""
 SETTING_OFF = 4.0
 """Speed (m/s), at least, at which a vehicle is expected to cross a junction."""
 ROOM = 2.0
@@ -312,7 +316,7 @@ class Bridge:
         if not candidates:
             return None
         (path, s), *others = candidates
-        vehicle = site.junction.vehicle(path, s, car.speed * rate)
+        vehicle = self._junction(site).vehicle(path, s, car.speed * rate)
         return Track(car.number, path, vehicle, or_on=others)
 
     def _may_take(self, car: Car, movement: Movement) -> bool:
@@ -370,7 +374,7 @@ class Bridge:
     # What it does.
 
     def _drive(self, car: Car, now: float, tracks: list[Track]) -> None:
-        ego = car.site.junction.vehicle(car.movement.path, car.s, car.speed * car.rate)
+        ego = self._junction(car.site).vehicle(car.movement.path, car.s, car.speed * car.rate)
         if car.shield is None and not self._take_over(car, now, ego, tracks):
             return
         self._forget(car, {track.number for track in tracks})
@@ -406,7 +410,7 @@ class Bridge:
     def _take_over(self, car: Car, now: float, ego: Any, tracks: list[Track]) -> bool:
         """Take control over, if there is a safe plan."""
         contract = self.settings.contract or self._contract(car.site)
-        shield = Shield(car.site.junction, car.movement.path, contract)
+        shield = Shield(self._junction(car.site), car.movement.path, contract)
         if self.settings.shield:
             try:
                 shield.ready(now, ego, tracks)
@@ -416,13 +420,19 @@ class Bridge:
         car.shield = shield
         if self.settings.driver == "cede":
             drive = Drive(self.settings.policy, contract)
-            car.approach = drive.enter(car.site.junction, car.movement.path)
+            car.approach = drive.enter(self._junction(car.site), car.movement.path)
         self.sumo.vehicle.setSpeedMode(car.name, _NOTHING)
         return True
 
     def _contract(self, site: Site) -> Contract:
-        settings = self.settings
-        return _contract_of(site, settings.share == 1.0 and settings.ego is None)
+        return _contract_of(site, self._all_driven)
+
+    def _junction(self, site: Site) -> Junction:
+        return site.fleet if self._all_driven else site.junction
+
+    @property
+    def _all_driven(self) -> bool:
+        return self.settings.share == 1.0 and self.settings.ego is None
 
     def _profile(self, car: Car) -> float:
         """The acceleration (m/s²) of a plain profile: limits, curves, stop signs, the leader."""
@@ -445,10 +455,10 @@ class Bridge:
     def _behind(self, car: Car, leader: Car, gap: float) -> float:
         """The intelligent driver model behind a leader."""
         closing = car.speed - leader.speed
-        if closing > 0.0 and gap + 2.5 < CRITICAL * closing:
+        if closing > 0.0 and gap + STANDSTILL < CRITICAL * closing:
             self.measures.critical += 1
-        wished = 1.0 * car.speed + car.speed * closing / (2 * math.sqrt(3.0 * self.network.braking))
-        return 3.0 * (1.0 - (max(0.0, wished) / max(gap, 0.3)) ** 2) if wished > gap / 2 else 3.0
+        wished = car.speed * (HEADWAY + closing / (2 * math.sqrt(3.0 * self.network.braking)))
+        return 3.0 * (1.0 - ((STANDSTILL + max(0.0, wished)) / (STANDSTILL + max(gap, -1.0))) ** 2)
 
 
 def _front(car: Car, stretch: Stretch) -> float:
@@ -479,11 +489,15 @@ def contract_named(name: str) -> Contract:
 
     SUMO moves a vehicle's front bumper along its lanes; where these bend, its centre is a little
     faster or slower than the front. `"sumo"` is an all-way stop's with the brakes of SUMO's own
-    vehicles: it can follow as near as they do.
+    vehicles: it can follow as near as they do. A vehicle arrives where the second one of a queue
+    has not been yet, so that others see it arrive.
     """
     errors = {"position_error": 0.05, "speed_error": 0.1}
     if name == "sumo":
-        return Contract("all-way-stop", ego_braking=4.5, ego_emergency=8.0, **errors)
+        queues = {"distance": 5.0, "patience": 30}
+        return Contract(
+            "all-way-stop", ego_braking=4.5, ego_emergency=8.0, precedence=queues, **errors
+        )
     known = Contract(name)
     return Contract(name, **{field: max(getattr(known, field), errors[field]) for field in errors})
 

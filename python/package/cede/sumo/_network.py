@@ -37,7 +37,7 @@ MOST_CANDIDATES = 4
 BEFORE, BEYOND = 300.0, 100.0
 """Metres of the lanes before and beyond a junction that belong to its paths."""
 
-LATERAL = 2.5
+LATERAL = 3.0
 """Lateral acceleration (m/s²) that a curve's speed is chosen for."""
 
 TOLERANCE = 0.1
@@ -111,6 +111,9 @@ class Site:
     name: str
     kind: str
     junction: Junction
+    """With the rights that SUMO's drivers know."""
+    fleet: Junction
+    """For vehicles that all are driven, and go in the order of their arrival where no sign says otherwise."""
     movements: list[Movement]
     on_lane: dict[str, list[tuple[Movement, Stretch]]]
     """The movements that use a lane."""
@@ -172,20 +175,25 @@ class Network:
             except Error as wrong:
                 raise self._wrong(node, connection, wrong) from None
             movements.append(self._movement(path, connection, way))
-        for second, later in enumerate(connections):
-            for first, earlier in enumerate(connections[:second]):
-                right = _right(node, earlier, later)
-                pair = (first, second) if right.first is earlier else (second, first)
-                builder.right_of_way(*pair, right.priority)
-        try:
-            junction = builder.build()
-        except Error as wrong:
-            raise Error(f"{self.file}: junction {node.getID()}: {wrong}") from None
-        site = Site(node.getID(), node.getType(), junction, movements, {})
+        junction = self._build(builder, node, connections, "unsigned")
+        fleet = self._build(builder, node, connections, "first-come")
+        site = Site(node.getID(), node.getType(), junction, fleet, movements, {})
         for movement in movements:
             for stretch in movement.stretches:
                 site.on_lane.setdefault(stretch.lane, []).append((movement, stretch))
         return site
+
+    def _build(self, builder: Any, node: Any, connections: list[Any], unsigned: str) -> Junction:
+        """The junction with the right of way of every two connections."""
+        for second, later in enumerate(connections):
+            for first, earlier in enumerate(connections[:second]):
+                right = _right(node, earlier, later, unsigned)
+                pair = (first, second) if right.first is earlier else (second, first)
+                builder.right_of_way(*pair, right.priority)
+        try:
+            return builder.build()
+        except Error as wrong:
+            raise Error(f"{self.file}: junction {node.getID()}: {wrong}") from None
 
     def _lanes(self, node: Any, connection: Any) -> list[Any]:
         """The lanes of a connection: before, inside, beyond the junction."""
@@ -249,19 +257,22 @@ class _Right:
     priority: str
 
 
-def _right(node: Any, one: Any, two: Any) -> _Right:
-    """The right of way of two connections as SUMO has it, and an order where it has none."""
+def _right(node: Any, one: Any, two: Any, unsigned: str) -> _Right:
+    """The right of way of two connections as SUMO has it, and an order where it has none.
+
+    `unsigned` is the priority where no sign says who goes first.
+    """
     if node.getType() == "allway_stop":
         return _Right(one, "first-come")
     forbids, forbidden = _forbids(node, one, two), _forbids(node, two, one)
     if forbids != forbidden:
         signs = node.getType() in ("priority", "priority_stop", "zipper")
-        return _Right(one if forbids else two, "signed" if signs else "unsigned")
+        return _Right(one if forbids else two, "signed" if signs else unsigned)
     # Vehicles of these two touch only where they cut corners, or both have to look out.
     one_major, two_major = (connection.getState() == "M" for connection in (one, two))
     if one_major != two_major:
         return _Right(one if one_major else two, "signed")
-    return _Right(one, "unsigned")
+    return _Right(one, unsigned)
 
 
 def _forbids(node: Any, first: Any, second: Any) -> bool:
