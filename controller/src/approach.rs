@@ -85,6 +85,9 @@ pub struct Approach<'j, 'w, const N: usize = MAX_OTHERS> {
     prediction: Option<Prediction>,
 }
 
+/// Braking (m/s²) to its line, up to which an ego with a driver of its own leaves everything to that one.
+pub const GENTLE: f32 = 1.5;
+
 /// What is wanted of the ego, in m/s².
 struct Wanted {
     most: f32,
@@ -92,6 +95,8 @@ struct Wanted {
     first: f32,
     /// With nobody left to meet.
     free: f32,
+    /// The policy is asked from where stopping at the line takes more braking than this.
+    gentle: f32,
 }
 
 /// A track on a path that has a zone ahead with the ego's.
@@ -166,13 +171,15 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
             most: f32::INFINITY,
             first,
             free: FREE,
+            gentle: 0.0,
         };
         self.decide_for(now, observation, &wanted)
     }
 
     /// [`Approach::decide`] for a vehicle that has a driver of its own for everything but the others at the junction, of
     /// its speed limit, curves and leader for example: no more than `most` (m/s²) is proposed, and `most` where nobody is
-    /// left to meet who goes first. NaN counts as full braking.
+    /// left to meet who goes first, or while braking at [`GENTLE`] still stops the ego at its line. NaN counts as full
+    /// braking.
     pub fn decide_up_to(
         &mut self,
         now: Instant,
@@ -183,6 +190,7 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
             most,
             first: most,
             free: most,
+            gentle: GENTLE,
         };
         self.decide_for(now, observation, &wanted)
     }
@@ -200,7 +208,12 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
                 self.prediction = asked.map(|(_, prediction)| prediction);
                 proposed = match asked {
                     None => wanted.free,
-                    Some((acceleration, _)) if acceleration < wanted.most => acceleration,
+                    Some((acceleration, _))
+                        if acceleration < wanted.most
+                            && self.is_near(&observation.ego, wanted.gentle) =>
+                    {
+                        acceleration
+                    }
                     Some(_) => wanted.most,
                 };
             } else {
@@ -211,6 +224,13 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
             prediction: self.prediction,
             ..self.shield.filter(now, observation, proposed)
         }
+    }
+
+    /// Whether the ego has to brake by more than `gentle` (m/s²) to stop at its line, or is past it.
+    fn is_near(&self, ego: &Vehicle, gentle: f32) -> bool {
+        let way = self.shield.way();
+        let line = way.path(way.ego()).map_or(0.0, Path::line);
+        ego.speed * ego.speed >= 2.0 * gentle * (line - ego.s)
     }
 
     /// What the policy alone would do (m/s², within ± 3): to measure what the shield costs, never to drive.

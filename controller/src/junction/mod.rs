@@ -26,5 +26,5 @@ pub use route::{Route, RouteError};
 pub use way::Way;
 pub use zone::{Span, Zone};
 
-/// Most others that a shield watches at once.
-pub const MAX_OTHERS: usize = 8;
+/// Most others that a shield watches at once, each on one path: 8, or 24 with the feature `many-others`.
+pub const MAX_OTHERS: usize = if cfg!(feature = "many-others") { 24 } else { 8 };

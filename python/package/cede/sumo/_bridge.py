@@ -268,32 +268,48 @@ class Bridge:
                     there[site.name].append(car)
         self._tracks: dict[tuple[str, str], Track | None] = {}
         for car in driven:
-            relevant = self._relevant(car, there[car.site.name])
-            tracks = [self._track(car.site, other) for other in relevant]
-            self._drive(car, now, [track for track in tracks if track is not None])
+            self._drive(car, now, self._relevant(car, there[car.site.name]))
 
-    def _relevant(self, car: Car, there: list[Car]) -> list[Car]:
+    def _relevant(self, car: Car, there: list[Car]) -> list[Track]:
         """The others at the junction without those that others hold back.
 
-        Nobody overtakes in a lane: who is behind another on its way to the junction reaches no
-        zone before it, and may take every path that the one behind may take. In the vehicle's own
-        lane that is the one just ahead; whoever is behind the vehicle is held back by it.
+        Nobody overtakes in a lane: who is behind others on its way to the junction reaches no zone
+        before them, and is left out if they may take every path that it may take. In the vehicle's
+        own lane only the one just ahead is told; whoever is behind the vehicle is held back by it.
         """
-        first: dict[str, Car] = {}
-        inside = []
+        lanes: dict[str, list[Car]] = {}
+        relevant = []
         for other in there:
             if other is car:
                 continue
             if car.site is not self.network.entering.get(other.lane):
-                inside.append(other)
-            elif other.lane == car.lane and other.position < car.position:
-                continue
-            else:
-                known = first.get(other.lane)
-                ahead = known is None or other.position > known.position
-                if ahead != (known is not None and other.lane == car.lane):
-                    first[other.lane] = other
-        return inside + list(first.values())
+                relevant.append(other)
+            elif other.lane != car.lane:
+                lanes.setdefault(other.lane, []).append(other)
+        ahead = [o for o in there if o.lane == car.lane and o.position > car.position]
+        if ahead and car.site is self.network.entering.get(car.lane):
+            relevant.append(min(ahead, key=lambda other: other.position))
+        tracks = [self._track(car.site, other) for other in relevant]
+        known = [track for track in tracks if track is not None]
+        queues = [self._foremost(car.site, queue) for queue in lanes.values()]
+        return known + [track for queue in queues for track in queue]
+
+    def _foremost(self, site: Site, queue: list[Car]) -> list[Track]:
+        """Of those in one lane, whoever may take a path that nobody ahead of it may take.
+
+        Nobody behind one that stands: until that one sets off, it is in the way.
+        """
+        foremost: list[Track] = []
+        taken: set[int] = set()
+        for other in sorted(queue, key=lambda other: -other.position):
+            track = self._track(site, other)
+            paths = set() if track is None else {path for path, _ in track.candidates}
+            if not paths <= taken:
+                foremost.append(track)
+                taken |= paths
+            if other.speed < STANDING:
+                break
+        return foremost
 
     def _track(self, site: Site, car: Car) -> Track | None:
         """The vehicle as others see it at this step; `None` if it is on no path."""
