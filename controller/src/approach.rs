@@ -154,12 +154,12 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
 
     /// The ego's acceleration for the period that begins `now`. To be called once a period.
     ///
-    /// The policy is asked about the nearest `N` of those whom the ego has yet to meet, the most restrictive of its
-    /// proposals passes to the shield, and the shield considers everybody at once. With nobody left to meet, the ego
-    /// accelerates gently up to the contract's speed. For those over whom it has precedence it does not brake, and sets
-    /// off. See [`Shield::filter`].
+    /// The policy is asked about one of those whom the ego has yet to meet: of those who do not wait for it, the one that
+    /// arrives first at the conflict point. Its proposal passes to the shield, which considers everybody. With nobody left
+    /// to meet, the ego accelerates gently up to the contract's speed. For those over whom it has precedence it does not
+    /// brake, and sets off. See [`Shield::filter`].
     ///
-    /// Cost: at most `N` passes through the network, and the shield's. The
+    /// Cost: one pass through the network, and the shield's. The
     /// acceleration is finite and within the contract's, whatever the bits of the observation.
     pub fn decide(&mut self, now: Instant, observation: &Observation<'_>) -> Decision {
         let first = if observation.ego.speed > SLOW {
@@ -237,7 +237,7 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
     ///
     /// To be called once a period instead of [`Approach::decide`]; 0 if the ego's state has a fault.
     ///
-    /// Cost: at most `N` passes through the network. Finite and within ± 3.
+    /// Cost: one pass through the network. Finite and within ± 3.
     pub fn proposal(&mut self, observation: &Observation<'_>) -> f32 {
         self.ask(observation, f32::MIN).map_or(0.0, |asked| {
             asked.map_or(FREE, |(acceleration, _)| acceleration)
@@ -493,7 +493,7 @@ mod tests {
     }
 
     #[test]
-    fn the_most_restrictive_proposal_is_the_one_that_counts() {
+    fn the_policy_is_asked_about_the_one_that_arrives_first() {
         let file = file(FeatureSet::Route, Perspective::Ego, 16);
         let site = site();
         let decide = |others: &[(u8, f32, f32)]| {
@@ -506,11 +506,49 @@ mod tests {
             approach.ask(&seen, FREE).unwrap().unwrap()
         };
         let (a, c) = ((1, 5.0, 4.0), (3, 20.0, 9.0));
-        let (first, third, both) = (decide(&[a]), decide(&[c]), decide(&[a, c]));
-        let least = if first.0 < third.0 { first } else { third };
-        assert_eq!(both, least);
+        // 55 m at 4 m/s, and 40 m at 9 m/s.
+        let (first, third) = (decide(&[a]), decide(&[c]));
         assert_eq!(first.1.other, 101);
         assert_eq!(third.1.other, 103);
+        assert_eq!(decide(&[a, c]), third);
+        assert_eq!(decide(&[c, a]), third);
+    }
+
+    #[test]
+    fn who_waits_for_the_ego_is_asked_about_last() {
+        let [waits, comes, later] = [(true, 1.0), (false, 8.0), (false, 9.0)]
+            .map(|(waits, arrives)| Urgency { waits, arrives });
+        assert!(comes.precedes(waits) && !waits.precedes(comes));
+        assert!(comes.precedes(later) && !later.precedes(comes));
+        assert!(!comes.precedes(comes));
+    }
+
+    #[test]
+    fn an_ego_with_a_driver_of_its_own_is_left_to_it_until_stopping_takes_more_than_gentle_braking()
+    {
+        let file = file(FeatureSet::Route, Perspective::Ego, 16);
+        let site = site();
+        let mut approach = drive(&file).enter(&site, PathId::new(0)).unwrap();
+        let tracks = tracks(&site, &[(1, 20.0, 1.0)]);
+        let line = site.path(PathId::new(0)).unwrap().line();
+        let (speed, most) = (6.0, 0.25);
+        let stop = speed * speed / (2.0 * GENTLE);
+        let mut decide = |short: f32, at: u64| {
+            let seen = Observation {
+                ego: on(&site, 0, line - short, speed),
+                tracks: &tracks,
+            };
+            let wanted = approach.ask(&seen, most).unwrap().unwrap().0;
+            let decision = approach.decide_up_to(Instant::from_millis(at), &seen, most);
+            (wanted, decision.acceleration)
+        };
+        let (asked, decided) = decide(stop + 1.0, 0);
+        assert!(asked < most && decided == most, "{asked} {decided}");
+        let (asked, decided) = decide(stop - 0.5, 100);
+        assert!(
+            asked < most && decided <= most.min(asked),
+            "{asked} {decided}"
+        );
     }
 
     #[test]

@@ -100,7 +100,7 @@ mod real;
 pub mod separation;
 pub mod shield;
 
-pub use approach::{Approach, Drive, FREE};
+pub use approach::{Approach, Drive, FREE, GENTLE};
 pub use decision::{Action, Breach, Cause, Decision, Intervention, Prediction, Reason};
 pub use fault::{Fault, Field, InputFault, Subject};
 pub use geometry::{Footprint, Point, Pose, UnitVector, Vector};

@@ -183,7 +183,10 @@ impl<'j, const N: usize> Shield<'j, N> {
 
 impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
     /// Room for one other at least, and for no more than there are hazards.
-    const ROOM: () = assert!(N >= 1 && N <= MAX_OTHERS, "a shield watches 1 to MAX_OTHERS others");
+    const ROOM: () = assert!(
+        N >= 1 && N <= MAX_OTHERS,
+        "a shield watches 1 to MAX_OTHERS others"
+    );
 
     /// A shield with rules of its own, which are not proved: see [`Rules`].
     ///

@@ -130,8 +130,8 @@ impl<const N: usize> Setting<N> {
             of_way,
             priority: self.priority,
             in_turns: match self.priority {
-                Priority::Unsigned => by_number,
-                _ => of_way,
+                Priority::Signed => of_way,
+                _ => by_number,
             },
         }
     }

@@ -89,13 +89,13 @@ fn while_both_rest_precedence_goes_round() {
     use RightOfWay::{Ego, Other, Unsettled};
     assert_eq!(
         turns(8, [Ego, Other], 3, 44),
-        "aaaaaaaaaa....bbbb....aaaaaaaaaaaa....bbbbbb"
+        "aaaaaaaaaa....bbbb....bbbbbbbbbbbb....aaaaaa"
     );
     // Who arrived together and rests since the same period has nothing to go by.
     assert_eq!(turns(8, [Unsettled; 2], 0, 60), ".".repeat(60));
     assert_eq!(
         turns(8, [Unsettled; 2], 3, 28),
-        "..............bbbb....aaaaaa"
+        "..............bbbb....bbbbbb"
     );
     assert_eq!(turns(0, [Ego, Other], 3, 30), "a".repeat(30));
 }
