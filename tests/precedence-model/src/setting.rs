@@ -40,6 +40,8 @@ pub struct Setting<const N: usize> {
     pub rights: [[RightOfWay; N]; N],
     /// When it counts.
     pub priority: Priority,
+    /// Whether the numbers of the vehicles\' paths go up.
+    pub ascending: bool,
     /// Steps a period.
     pub grain: u8,
     /// Steps by which each shield's calls are later than the grid of periods.
@@ -85,6 +87,7 @@ impl<const N: usize> Setting<N> {
             rule,
             rights: [[RightOfWay::Unsettled; N]; N],
             priority: Priority::FirstCome,
+            ascending: true,
             grain: 2,
             phases: [0; N],
             jitter: 0,
@@ -117,10 +120,17 @@ impl<const N: usize> Setting<N> {
         self
     }
 
+    /// The first vehicle is on the path with the highest number, so that its turn comes first.
+    #[must_use]
+    pub const fn descending(mut self) -> Self {
+        self.ascending = false;
+        self
+    }
+
     /// What vehicle `one` knows of itself and `two`.
     #[must_use]
     pub fn right_of(&self, one: usize, two: usize) -> Right {
-        let by_number = if one < two {
+        let by_number = if (one < two) == self.ascending {
             RightOfWay::Ego
         } else {
             RightOfWay::Other

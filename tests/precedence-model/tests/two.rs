@@ -36,7 +36,7 @@ fn never_both_when_frames_and_calls_are_missed() {
 
 #[test]
 fn never_both_when_a_shield_starts_late() {
-    is_sound("late", suite::late(0).right(1, 0));
+    is_sound("late", suite::late(0).right(1, 0).descending());
     is_sound("late equals", suite::late(0));
 }
 
@@ -99,7 +99,12 @@ fn errors_of_sensed_places_beyond_the_contract_are_found() {
 
 #[test]
 fn a_late_shield_that_takes_everybody_for_one_that_just_moved_is_found() {
-    let model = Watched::<2, Sound>::new(suite::late(0).right(1, 0)).hasty();
+    // The first two turns are the late one's, as it counts; the third is the other's, as that one counts.
+    let setting = Setting {
+        longest: 40,
+        ..suite::late(0).right(1, 0).descending()
+    };
+    let model = Watched::<2, Sound>::new(setting).hasty();
     let outcome = run("hasty", model);
     assert!(outcome.both.is_some());
 }
