@@ -235,10 +235,26 @@ impl Path {
         if !self.points.windows(2).all(apart) {
             return Err(("points", "has one point twice"));
         }
+        if !self.arc_is_length() {
+            return Err((
+                "arc",
+                "is not the length of the points, to 0.1 mm and as much for each metre",
+            ));
+        }
         if !(self.length > 0.0 && self.width > 0.0 && (self.length + self.width).is_finite()) {
             return Err(("length, width", "is not more than 0 (m)"));
         }
         Ok(())
+    }
+
+    /// Whether arc lengths grow as the points are apart.
+    fn arc_is_length(&self) -> bool {
+        let apart = self.points.windows(2).zip(self.arc.windows(2));
+        apart.into_iter().all(|(points, arc)| {
+            let long = arc[1] - arc[0];
+            let far = (points[1][0] - points[0][0]).hypot(points[1][1] - points[0][1]);
+            (far - long).abs() <= 1e-4 + 1e-4 * long
+        })
     }
 }
 

@@ -139,6 +139,7 @@ fn what_is_no_site_is_refused_by_name() {
         said(&|s| s.paths[1].arc[1] = 0.0),
         "paths[1].arc: does not increase"
     );
+    assert!(said(&|s| s.paths[1].arc[1] = 79.0).contains("is not the length of the points"));
     assert_eq!(
         said(&|s| s.paths[0].width = 0.0),
         "paths[0].length, width: is not more than 0 (m)"
