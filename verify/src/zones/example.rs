@@ -7,6 +7,7 @@ use cede_controller::{
 };
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+use std::f32::consts::PI;
 use thiserror::Error;
 
 /// Paths of a junction, at most.
@@ -92,7 +93,7 @@ pub fn bends(seed: u64) -> Option<Site> {
     let mut ways: Vec<Way> = Vec::new();
     while ways.len() < 9 {
         let mut arm = || {
-            let angle = random.random_range(-3.14..3.14_f32);
+            let angle = random.random_range(-PI..PI);
             Vector::new(angle.cos(), angle.sin()) * 45.0
         };
         let (from, to) = (arm(), arm());

@@ -42,7 +42,7 @@ fn smaller(zone: &Zone, end: usize, by: f64) -> Option<Zone> {
     if span[end % 2].abs() >= 1e6 {
         return None;
     }
-    span[end % 2] += if end % 2 == 0 { by } else { -by };
+    span[end % 2] += [by, -by][end % 2];
     (span[0] <= span[1]).then_some(zone)
 }
 
