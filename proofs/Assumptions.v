@@ -1,5 +1,5 @@
 (* What every theorem rests on: check.sh compares it with axioms.txt. *)
-Require Import Ego Shield Merge Pair Choice Limit Precedence Turns Order Controls Passage.
+Require Import Ego Shield Merge Pair Choice Limit Precedence Turns Order Yield Newer Controls Passage Turned.
 Print Assumptions verified_plans_keep_apart.
 Print Assumptions at_most_one_comes_in_ahead.
 Print Assumptions shielded_vehicles_keep_apart.
@@ -18,6 +18,9 @@ Print Assumptions orders_agree.
 Print Assumptions never_both_right_of_way.
 Print Assumptions never_both_equals.
 Print Assumptions never_both_sides.
+Print Assumptions precedence_is_safe_at_crossings.
+Print Assumptions one_claim_is_newer.
+Print Assumptions precedence_is_safe_by_counts.
 Print Assumptions conditions_can_be_met.
 Print Assumptions a_passage_can_be_verified.
 Print Assumptions C6_is_needed.
@@ -25,3 +28,4 @@ Print Assumptions A9_is_needed.
 Print Assumptions C2_acceleration_is_needed.
 Print Assumptions slack_is_needed.
 Print Assumptions A1_is_needed.
+Print Assumptions newer_is_needed.

@@ -333,3 +333,33 @@ Definition Theorem2_apart := forall k zones occupied s v t w from from',
       s (Rmax from from') < s_in z /\ t (Rmax from from') < t_in z /\
       exists y, lane y = true /\ mirrored z y /\ shielded k y t w s v from')) ->
   forall u, Rmax from from' <= u -> ~ occupied (s u) (t u).
+
+(** * Precedence *)
+
+(* A shield at work against one other in one zone; at the calls [claimed] its vehicle has precedence. *)
+Record watches (k : contract) (z : zone) (s v t w : R -> R) (claimed : nat -> Prop)
+    (tau c : nat -> R) (l : log) (b : nat -> bounds) (since : nat) : Prop := {
+  its_calls : on_grid k tau;
+  its_ego : obeys k v tau c;
+  its_log : true_log k l s v tau c;
+  its_other : keeps_contract k w (tau since);
+  its_view : forall j, (since <= j)%nat -> known k t w (tau since) (tau j) (b j);
+  its_start : (1 <= since)%nat;
+  its_judgement : forall i, (since <= i)%nat -> judged k l c b z claimed since i
+}.
+
+(* The claim of call i at times tau is newer than that of call j of the other shield, at times tau': before it, in time for a
+   command to take effect, the other vehicle was at rest, up to r, so long after the first call without its own claim that `go`
+   would have made it faster. *)
+Definition newer (k : contract) (r : R) (tau : nat -> R) (i : nat) (tau' : nat -> R) (j : nat) (w : R -> R) :=
+  exists x, w x <= r /\ tau' (S j) + switching k + r / ego_go k < x /\ x + switching k <= tau i.
+
+(* Theorem 4 at crossings: of two shielded vehicles that take each other for one that gives way (D13), neither checking the
+   zone itself then, not both are in it, if of each two claims one is newer. P6 is the bound on the rule's braking. C7 is not
+   assumed. *)
+Definition Theorem4_crossing := forall k r z y s v t w claimed tau c l b since claimed' tau' c' l' b' since',
+  valid k -> precedence_braking k <= ego_braking k -> 0 <= r < unheld k ->
+  lane z = false -> lane y = false -> mirrored z y -> motion s v -> motion t w ->
+  watches k z s v t w claimed tau c l b since -> watches k y t w s v claimed' tau' c' l' b' since' ->
+  (forall i j, claimed i -> claimed' j -> newer k r tau i tau' j w \/ newer k r tau' j tau i v) ->
+  forall u, Rmax (tau since) (tau' since') <= u -> ~ inside z (s u) (t u).

@@ -114,24 +114,24 @@ Proof.
 Qed.
 End Two.
 
-(* Two turns: P holds turn n when Q takes turn n'. *)
-Lemma no_second_turn p q sure_p ended_p sure_q ended_q S_p S_q L_p L_q owns_p owns_q turn_p i0 i1 j0 n n' :
+(* P holds turn n when Q has rested for so long that it will take turn n' in G - G' calls. *)
+Lemma no_turn_before p q sure_p ended_p sure_q ended_q S_p S_q L_p L_q owns_p turn_p i0 i1 j0 n n' lQ G' :
   counts p sure_p ended_p S_p L_p -> counts q sure_q ended_q S_q L_q ->
-  takes_turns S_p L_p owns_p turn_p ->
-  agree p q L_q owns_p owns_q ->
+  takes_turns S_p L_p owns_p turn_p -> (m - 1 <= G')%nat ->
   (i0 <= i1)%nat -> (forall i, (i0 <= i <= i1)%nat -> turn_p i = Some n) ->
   S_p i0 = (begins n + G)%nat -> owns_p i0 n -> (exists l, L_p i0 = Some l /\ (begins n <= l < begins (n + 1))%nat) ->
-  S_q j0 = (begins n' + G)%nat -> owns_q j0 n' -> (exists l, L_q j0 = Some l /\ (begins n' <= l < begins (n' + 1))%nat) ->
+  (begins n' + G' <= S_q j0)%nat -> L_q j0 = Some lQ -> (begins n' <= lQ < begins (n' + 1))%nat ->
+  ((q (j0 - lQ)%nat <= p i0)%R -> ~ owns_p i0 n') ->
   (p i0 <= q j0)%R -> (p i1 <= q j0 < p (i1 + 1)%nat)%R -> False.
 Proof.
-  intros P Q rules order le held sP oP (l0 & L0 & l0a & l0b) sQ oQ (lQ & LQ & lQa & lQb) first now.
+  intros P Q rules grace le held sP oP (l0 & L0 & l0a & l0b) sQ LQ [lQa lQb] order first now.
   pose proof (grid_of _ _ _ _ _ P) as gp. pose proof (grid_of _ _ _ _ _ Q) as gq.
   assert (p0 : (0 < period k)%R) by (destruct ok; lra).
   assert (j00 : (0 <= jitter k)%R) by (destruct ok; lra).
   assert (m3 : (m = 2 \/ m = 3)%nat) by (destruct en as [[-> _] | [-> _]]; auto).
   (* P's count has passed the beginning of Q's turn, and P dropped there what it had. *)
   destruct (L_p i1) as [l1 |] eqn:L1; [| pose proof (held i1 ltac:(lia)) as has; rewrite (drops_unknown _ _ _ _ rules i1 L1) in has; discriminate].
-  pose proof (pair_surely_at_most_perhaps p q _ _ _ _ _ _ _ _ P Q i1 j0 l1 L1 now) as five. rewrite sQ in five.
+  pose proof (pair_surely_at_most_perhaps p q _ _ _ _ _ _ _ _ P Q i1 j0 l1 L1 now) as five.
   destruct (L_counts _ _ _ _ _ P i1 l1 L1) as (l1i & _ & counted).
   set (base := (i1 - l1)%nat) in *.
   assert (after_ : (base + begins n' < i0)%nat).
@@ -147,7 +147,7 @@ Proof.
   set (e := (j0 - lQ)%nat) in *.
   assert (late : (p i0 < q e)%R).
   { destruct (Rlt_le_dec (p i0) (q e)) as [? | early]; [assumption | exfalso].
-    destruct (Nat.eq_dec n n') as [-> | ne]; [exact (order i0 j0 n' lQ first LQ early oP oQ) |].
+    destruct (Nat.eq_dec n n') as [-> | ne]; [exact (order early oP) |].
     pose proof (begins_grows (n' + 1) n ltac:(lia)) as later.
     assert (q j0 < q (j0 + 1)%nat)%R.
     { pose proof (spacing k q gq j0 1) as [A _]. simpl INR in A. lra. }
@@ -191,16 +191,16 @@ Proof.
   destruct (S_counts _ _ _ _ _ Q j0) as [_ stretchQ].
   assert (countQ : (S_q j0 <= lQ)%nat).
   { destruct (le_lt_dec (S_q j0) lQ) as [? | more]; [assumption | exfalso]. apply unsureQ, stretchQ; unfold e; lia. }
-  rewrite sQ in countQ. pose proof (begins_least n') as least_.
+  pose proof (begins_least n') as least_.
   assert (far : (rho + T <= i1)%nat).
   { pose proof (spacing k q gq e (j0 - e)) as [A _]. replace (e + (j0 - e))%nat with j0 in A by (unfold e; lia).
     destruct (le_lt_dec (rho + T) i1) as [? | near]; [assumption | exfalso].
     pose proof (spacing k p gp rho (i1 + 1 - rho)) as [_ U].
     assert (ri : (rho <= i1 + 1)%nat) by (apply (calls_strictly p rho (i1 + 1) gp); lra).
     replace (rho + (i1 + 1 - rho))%nat with (i1 + 1)%nat in U by lia.
-    assert (INR (i1 + 1 - rho) + 3 <= INR (j0 - e))%R.
-    { change 3%R with (IZR (Z.of_nat 3)). rewrite <- INR_IZR_INZ, <- plus_INR. apply le_INR. unfold e. lia. }
-    assert ((INR (i1 + 1 - rho) + 3) * period k <= INR (j0 - e) * period k)%R by (apply Rmult_le_compat_r; lra). lra. }
+    assert (INR (i1 + 1 - rho) + 1 <= INR (j0 - e))%R.
+    { rewrite <- S_INR. apply le_INR. unfold e. lia. }
+    assert ((INR (i1 + 1 - rho) + 1) * period k <= INR (j0 - e) * period k)%R by (apply Rmult_le_compat_r; lra). lra. }
   (* Within a patience P's count was a multiple of it, and P dropped its turn. *)
   set (c := (rho + T - base)%nat).
   set (y := (c / T)%nat).
@@ -220,6 +220,22 @@ Proof.
   rewrite (drops_late _ _ _ _ rules j y 1%nat Cj two) in has; [discriminate |].
   change (begins 1) with (2 * T)%nat. lia.
 Qed.
+
+(* Two turns: P holds turn n when Q takes turn n'. *)
+Lemma no_second_turn p q sure_p ended_p sure_q ended_q S_p S_q L_p L_q owns_p owns_q turn_p i0 i1 j0 n n' :
+  counts p sure_p ended_p S_p L_p -> counts q sure_q ended_q S_q L_q ->
+  takes_turns S_p L_p owns_p turn_p ->
+  agree p q L_q owns_p owns_q ->
+  (i0 <= i1)%nat -> (forall i, (i0 <= i <= i1)%nat -> turn_p i = Some n) ->
+  S_p i0 = (begins n + G)%nat -> owns_p i0 n -> (exists l, L_p i0 = Some l /\ (begins n <= l < begins (n + 1))%nat) ->
+  S_q j0 = (begins n' + G)%nat -> owns_q j0 n' -> (exists l, L_q j0 = Some l /\ (begins n' <= l < begins (n' + 1))%nat) ->
+  (p i0 <= q j0)%R -> (p i1 <= q j0 < p (i1 + 1)%nat)%R -> False.
+Proof.
+  intros P Q rules order le held sP oP lP sQ oQ (lQ & LQ & between) first now.
+  apply (no_turn_before p q sure_p ended_p sure_q ended_q S_p S_q L_p L_q owns_p turn_p i0 i1 j0 n n' lQ G); auto; [lia | lia |].
+  intros early own. exact (order i0 j0 n' lQ first LQ early own oQ).
+Qed.
+
 (* Never two turns at one time. *)
 Theorem never_two_turns p q sure_p ended_p sure_q ended_q S_p S_q L_p L_q owns_p owns_q turn_p turn_q i j n n' x :
   counts p sure_p ended_p S_p L_p -> counts q sure_q ended_q S_q L_q ->

@@ -8,7 +8,13 @@ const GROUPS: [(&str, &[&str]); 6] = [
     ("A first look", &["demo", "play"]),
     (
         "Firmware: a policy and a contract for a vehicle",
-        &["import", "export", "verify margins", "verify beyond"],
+        &[
+            "import",
+            "export",
+            "verify margins",
+            "verify zones",
+            "verify beyond",
+        ],
     ),
     ("Safety: proofs, and checks of proofs", &["verify"]),
     (

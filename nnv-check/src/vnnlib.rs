@@ -1,16 +1,19 @@
-//! Reads properties in VNN-LIB 1.0: declarations of `X_i` and `Y_i`, and assertions over them.
+//! Reads properties in VNN-LIB 1.0, with declarations of `X_i` and `Y_i`, and in VNN-LIB 2.0, with a network of one input
+//! and one output tensor; and assertions over them.
 //!
-//! Understood: `and`, `or`, `<=`, `>=`, `<`, `>`, `=` (two sides or a chain), `+`, `-`, `*` and `/`
+//! Understood: `and`, `or`, `<=`, `>=`, `<`, `>`, `=`, `==`, `!=` (two sides or a chain), `+`, `-`, `*` and `/`
 //! by constants. Inputs must be bounded by constants, outputs are constrained linearly. Every
 //! decimal has its exact value, all arithmetic of the reader is exact, and < is not ≤.
 
 mod decimal;
 mod expression;
 mod lexer;
+mod names;
 
 use super::property::{Conjunction, Halfspace, InputBox, Limit, Property, Query};
 use super::{dyadic, gzip};
 use expression::{Atom, Formula};
+use names::{Names, Variable};
 use num_rational::BigRational;
 use num_traits::{Signed as _, Zero as _};
 use std::collections::HashMap;
@@ -40,16 +43,19 @@ const MOST_NUMBERS: usize = 1 << 24;
 /// not linear or mixes inputs and outputs.
 pub fn read(text: &str) -> Result<Property, VnnlibError> {
     let expressions = lexer::parse(text)?;
-    let mut inputs = 0;
-    let mut outputs = 0;
+    let second = match expressions.first() {
+        Some(first) => expression::version(first)?.is_some(),
+        None => false,
+    };
+    let mut names = match second {
+        true => Names::Tensors(None),
+        false => Names::Numbered(0, 0),
+    };
     let mut formulas = Vec::new();
-    for expression in &expressions {
-        match expression::statement(expression)? {
-            expression::Statement::Input(index) => inputs = inputs.max(index + 1),
-            expression::Statement::Output(index) => outputs = outputs.max(index + 1),
-            expression::Statement::Assert(formula) => formulas.push(formula),
-        }
+    for expression in expressions.iter().skip(usize::from(second)) {
+        expression::statement(expression, &mut names, &mut formulas)?;
     }
+    let [inputs, outputs] = names.counts();
     let start = vec![Disjunct {
         ranges: vec![Range::default(); inputs],
         outputs: Vec::new(),
@@ -57,7 +63,7 @@ pub fn read(text: &str) -> Result<Property, VnnlibError> {
     let mut queries: Vec<Query> = Vec::new();
     let mut places: HashMap<Key, usize> = HashMap::new();
     for disjunct in conjoin(start, &Formula::And(formulas), outputs)? {
-        let Some((region, limits)) = domain(&disjunct.ranges)? else {
+        let Some((region, limits)) = domain(&disjunct.ranges, &names)? else {
             continue;
         };
         let place = *places.entry(key(&region, &limits)).or_insert(queries.len());
@@ -157,7 +163,10 @@ impl Range {
 }
 
 /// The box of `f64` around the ranges, and the limits that it widens; `None` if there is no input.
-fn domain(ranges: &[Range]) -> Result<Option<(InputBox, Vec<Limit>)>, VnnlibError> {
+fn domain(
+    ranges: &[Range],
+    names: &Names<'_>,
+) -> Result<Option<(InputBox, Vec<Limit>)>, VnnlibError> {
     let mut region = InputBox {
         lower: Vec::with_capacity(ranges.len()),
         upper: Vec::with_capacity(ranges.len()),
@@ -174,8 +183,9 @@ fn domain(ranges: &[Range]) -> Result<Option<(InputBox, Vec<Limit>)>, VnnlibErro
             upper: Some(upper),
         } = range
         else {
+            let name = names.name(Variable::X(input));
             return Err(fault(format!(
-                "X_{input} is not bounded on both sides; assert (>= X_{input} …) and (<= X_{input} …)"
+                "{name} is not bounded on both sides; assert (>= {name} …) and (<= {name} …)"
             )));
         };
         if lower.value > upper.value || lower.value == upper.value && (lower.strict || upper.strict)
@@ -185,7 +195,8 @@ fn domain(ranges: &[Range]) -> Result<Option<(InputBox, Vec<Limit>)>, VnnlibErro
         let hull = (dyadic::floor(&lower.value), dyadic::ceil(&upper.value));
         if !hull.0.is_finite() || !hull.1.is_finite() {
             return Err(fault(format!(
-                "a limit of X_{input} is beyond the range of double precision (about 1.8e308)"
+                "a limit of {} is beyond the range of double precision (about 1.8e308)",
+                names.name(Variable::X(input))
             )));
         }
         for (side, hull, upper) in [(lower, hull.0, false), (upper, hull.1, true)] {

@@ -9,3 +9,4 @@ pub mod lemma;
 pub mod margin;
 pub mod policy;
 pub mod reach;
+pub mod zones;

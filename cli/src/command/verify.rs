@@ -11,6 +11,7 @@ mod network;
 mod policy;
 mod reach;
 mod shield;
+mod zones;
 
 use crate::failure::Failure;
 use clap::Subcommand;
@@ -37,6 +38,8 @@ pub(crate) enum Verify {
     Reach(reach::Reach),
     /// How far can rounding move the shield's margins?
     Margins(margins::Margins),
+    /// Do the zones of a junction cover every overlap?
+    Zones(zones::Zones),
     /// Do the steps of the shield's theorem hold, by an SMT solver?
     Lemmas(lemmas::Lemmas),
     /// Checks a certificate, with code that is independent of the prover.
@@ -58,6 +61,7 @@ impl Verify {
             Self::Policy(policy) => policy.run(),
             Self::Reach(reach) => reach.run(),
             Self::Margins(margins) => margins.run(),
+            Self::Zones(zones) => zones.run(),
             Self::Lemmas(lemmas) => lemmas.run(),
             Self::Check(check) => check.run(),
             Self::Shield(shield) => shield.run(),

@@ -10,6 +10,7 @@ use std::path::Path;
 pub(crate) struct Known {
     pub(crate) lemmas: Vec<String>,
     pub(crate) margins: Vec<String>,
+    pub(crate) zones: Vec<String>,
     pub(crate) campaign: Vec<String>,
     pub(crate) beyond: Vec<String>,
     /// Headings under which it says that results are.
@@ -235,6 +236,7 @@ impl Finder<'_> {
         match kind {
             Kind::Lemma => among(&self.known.lemmas),
             Kind::Margin => among(&self.known.margins),
+            Kind::Zones => among(&self.known.zones),
             Kind::Campaign => among(&self.known.campaign),
             Kind::Beyond => among(&self.known.beyond),
             Kind::Property => among(&self.file.properties),

@@ -120,6 +120,8 @@ pub(crate) struct EvidenceNames {
     lemmas: Vec<String>,
     /// Of `cede verify margins`.
     margins: Vec<String>,
+    /// Junctions of `cede verify zones`.
+    zones: Vec<String>,
     /// In `policy.toml`.
     properties: Vec<String>,
     /// In `reach.toml`.
@@ -140,6 +142,7 @@ pub(crate) enum Kind {
     Theorem,
     Lemma,
     Margin,
+    Zones,
     Property,
     Scenario,
     Campaign,
@@ -160,7 +163,12 @@ impl Kind {
     pub(crate) const fn is_proof(self) -> bool {
         matches!(
             self,
-            Self::Theorem | Self::Lemma | Self::Margin | Self::Property | Self::Scenario
+            Self::Theorem
+                | Self::Lemma
+                | Self::Margin
+                | Self::Zones
+                | Self::Property
+                | Self::Scenario
         )
     }
 }
@@ -171,6 +179,7 @@ impl fmt::Display for Kind {
             Self::Theorem => "theorem",
             Self::Lemma => "lemma",
             Self::Margin => "margin",
+            Self::Zones => "zones of junctions",
             Self::Property => "property",
             Self::Scenario => "scenario",
             Self::Campaign => "campaign",
@@ -188,6 +197,7 @@ impl EvidenceNames {
             (Kind::Theorem, &self.theorems),
             (Kind::Lemma, &self.lemmas),
             (Kind::Margin, &self.margins),
+            (Kind::Zones, &self.zones),
             (Kind::Property, &self.properties),
             (Kind::Scenario, &self.scenarios),
             (Kind::Campaign, &self.campaign),

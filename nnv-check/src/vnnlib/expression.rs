@@ -3,18 +3,10 @@
 use super::VnnlibError;
 use super::decimal;
 use super::lexer::{Place, Sexp};
+use super::names::{Names, Variable};
 use num_rational::BigRational;
 use num_traits::{One as _, Zero as _};
 use std::collections::BTreeMap;
-
-/// A top-level statement.
-pub(super) enum Statement {
-    /// Declaration of the input with this index.
-    Input(usize),
-    /// Declaration of the output with this index.
-    Output(usize),
-    Assert(Formula),
-}
 
 /// A formula over linear constraints.
 pub(super) enum Formula {
@@ -32,84 +24,105 @@ pub(super) struct Atom {
     pub(super) place: Place,
 }
 
-/// The most variables of a kind; an index beyond it is a typing error, or hostile.
-const MOST_VARIABLES: usize = 1 << 16;
-
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Variable {
-    X(usize),
-    Y(usize),
-}
-
-fn variable(word: &str) -> Option<Variable> {
-    let index = |digits: &str| digits.parse().ok().filter(|&i: &usize| i < MOST_VARIABLES);
-    if let Some(digits) = word.strip_prefix("X_") {
-        index(digits).map(Variable::X)
-    } else {
-        index(word.strip_prefix("Y_")?).map(Variable::Y)
+/// The version of a file that says it, `(vnnlib-version <2.0>)`; none of other statements.
+///
+/// # Errors
+/// If it is not supported.
+pub(super) fn version(expression: &Sexp<'_>) -> Result<Option<()>, VnnlibError> {
+    match expression {
+        Sexp::List(items, _) => match items.as_slice() {
+            [Sexp::Word("vnnlib-version", _), Sexp::Word(version, at)] => {
+                let two = version
+                    .strip_prefix("<2.")
+                    .and_then(|v| v.strip_suffix('>'));
+                if two.is_some_and(|minor| minor.parse::<u32>().is_ok()) {
+                    return Ok(Some(()));
+                }
+                Err(at.error(format!("version {version:.80}: expected <2.0>")))
+            }
+            _ => Ok(None),
+        },
+        _ => Ok(None),
     }
 }
 
-/// One statement.
-pub(super) fn statement(expression: &Sexp<'_>) -> Result<Statement, VnnlibError> {
+/// One statement: declares names, or adds the formula that it asserts to `formulas`.
+pub(super) fn statement<'a>(
+    expression: &Sexp<'a>,
+    names: &mut Names<'a>,
+    formulas: &mut Vec<Formula>,
+) -> Result<(), VnnlibError> {
     let place = expression.place();
     let Sexp::List(items, _) = expression else {
-        return Err(place.error("expected (declare-const …) or (assert …)".to_owned()));
+        return Err(place.error("expected a declaration or (assert …)".to_owned()));
     };
     match items.as_slice() {
         [
             Sexp::Word("declare-const", _),
             Sexp::Word(name, at),
             Sexp::Word("Real", _),
-        ] => match variable(name) {
-            Some(Variable::X(index)) => Ok(Statement::Input(index)),
-            Some(Variable::Y(index)) => Ok(Statement::Output(index)),
-            None => Err(at.error(format!(
-                "variable {name}: expected X_i or Y_i with i < {MOST_VARIABLES}"
-            ))),
-        },
-        [Sexp::Word("assert", _), body] => formula(body).map(Statement::Assert),
-        _ => Err(place.error("expected (declare-const NAME Real) or (assert FORMULA)".to_owned())),
+        ] => names.declare(name, *at),
+        [
+            Sexp::Word("declare-network", _),
+            Sexp::Word(_, _),
+            parts @ ..,
+        ] => names.network(parts, place),
+        [Sexp::Word("assert", _), body] => {
+            formulas.push(formula(body, names)?);
+            Ok(())
+        }
+        [Sexp::Word("vnnlib-version", at), ..] => {
+            Err(at.error("the version comes first, and once".to_owned()))
+        }
+        _ => Err(place.error(
+            "expected (declare-const NAME Real), (declare-network NAME …) or (assert FORMULA)"
+                .to_owned(),
+        )),
     }
 }
 
-fn formula(expression: &Sexp<'_>) -> Result<Formula, VnnlibError> {
+fn formula(expression: &Sexp<'_>, names: &Names<'_>) -> Result<Formula, VnnlibError> {
     let place = expression.place();
     let Sexp::List(items, _) = expression else {
         return Err(place.error("expected a formula in parentheses".to_owned()));
     };
-    let all = |parts: &[Sexp<'_>]| parts.iter().map(formula).collect::<Result<Vec<_>, _>>();
+    let all = |parts: &[Sexp<'_>]| -> Result<Vec<_>, _> {
+        parts.iter().map(|part| formula(part, names)).collect()
+    };
     match items.as_slice() {
         [Sexp::Word("and", _), parts @ ..] => all(parts).map(Formula::And),
         [Sexp::Word("or", _), parts @ ..] => Ok(Formula::Or(all(parts)?, place)),
         [Sexp::Word(comparison, _), sides @ ..] if sides.len() > 1 && is_comparison(comparison) => {
             let pairs = sides.windows(2);
-            let all = pairs.map(|pair| compare(comparison, &pair[0], &pair[1], place));
+            let all = pairs.map(|pair| compare(comparison, &pair[0], &pair[1], names));
             all.collect::<Result<_, _>>().map(Formula::And)
         }
         [Sexp::Word(other, at), ..] => Err(at.error(format!(
-            "operator {other}: expected and, or, <=, >=, <, > or = with two sides"
+            "operator {other}: expected and, or, <=, >=, <, >, == or != with two sides"
         ))),
         _ => Err(place.error("expected a formula".to_owned())),
     }
 }
 
 fn is_comparison(word: &str) -> bool {
-    matches!(word, "<=" | "<" | ">=" | ">" | "=")
+    matches!(word, "<=" | "<" | ">=" | ">" | "=" | "==" | "!=")
 }
 
 fn compare(
     comparison: &str,
     a: &Sexp<'_>,
     b: &Sexp<'_>,
-    place: Place,
+    names: &Names<'_>,
 ) -> Result<Formula, VnnlibError> {
-    let strict = matches!(comparison, "<" | ">");
-    let atom = |a, b| at_most(a, b, strict, place).map(Formula::Atom);
+    let atom = |a, b, strict| at_most(a, b, strict, names).map(Formula::Atom);
     match comparison {
-        "<=" | "<" => atom(a, b),
-        ">=" | ">" => atom(b, a),
-        _ => Ok(Formula::And(vec![atom(a, b)?, atom(b, a)?])),
+        "<=" | "<" => atom(a, b, comparison == "<"),
+        ">=" | ">" => atom(b, a, comparison == ">"),
+        "!=" => {
+            let either = vec![atom(a, b, true)?, atom(b, a, true)?];
+            Ok(Formula::Or(either, a.place()))
+        }
+        _ => Ok(Formula::And(vec![atom(a, b, false)?, atom(b, a, false)?])),
     }
 }
 
@@ -155,9 +168,15 @@ fn moderate(value: &BigRational, place: Place) -> Result<(), VnnlibError> {
     }
 }
 
-fn at_most(a: &Sexp<'_>, b: &Sexp<'_>, strict: bool, place: Place) -> Result<Atom, VnnlibError> {
-    let mut difference = linear(a)?;
-    difference.add(linear(b)?, -1.0, place)?;
+fn at_most(
+    a: &Sexp<'_>,
+    b: &Sexp<'_>,
+    strict: bool,
+    names: &Names<'_>,
+) -> Result<Atom, VnnlibError> {
+    let place = a.place();
+    let mut difference = linear(a, names)?;
+    difference.add(linear(b, names)?, -1.0, place)?;
     let mut atom = Atom {
         inputs: Vec::new(),
         outputs: Vec::new(),
@@ -175,51 +194,63 @@ fn at_most(a: &Sexp<'_>, b: &Sexp<'_>, strict: bool, place: Place) -> Result<Ato
     Ok(atom)
 }
 
-fn linear(expression: &Sexp<'_>) -> Result<Linear, VnnlibError> {
+fn linear(expression: &Sexp<'_>, names: &Names<'_>) -> Result<Linear, VnnlibError> {
     let place = expression.place();
+    let of = |part| linear(part, names);
     match expression {
-        Sexp::Word(word, _) => {
-            if let Some(variable) = variable(word) {
-                return Ok(Linear {
-                    terms: BTreeMap::from([(variable, BigRational::one())]),
-                    constant: BigRational::zero(),
-                });
-            }
-            let constant = decimal::value(word).ok_or_else(|| {
-                let most = decimal::MOST_DIGITS;
-                place.error(format!(
-                    "{word:.80} is neither a variable nor a number of at most {most} digits and with an \
-                     exponent of at most {most}"
-                ))
-            })?;
-            Ok(Linear {
-                terms: BTreeMap::new(),
-                constant,
-            })
-        }
+        Sexp::Word(..) | Sexp::Element(..) => leaf(expression, names),
         Sexp::List(items, _) => match items.as_slice() {
-            [Sexp::Word("+", _), parts @ ..] => sum(parts, 1.0, place),
-            [Sexp::Word("-", _), only] => sum(std::slice::from_ref(only), -1.0, place),
+            [Sexp::Word("+", _), parts @ ..] => sum(parts, 1.0, names, place),
+            [Sexp::Word("-", _), only] => sum(std::slice::from_ref(only), -1.0, names, place),
             [Sexp::Word("-", _), first, rest @ ..] => {
-                let mut total = linear(first)?;
-                total.add(sum(rest, 1.0, place)?, -1.0, place)?;
+                let mut total = of(first)?;
+                total.add(sum(rest, 1.0, names, place)?, -1.0, place)?;
                 Ok(total)
             }
-            [Sexp::Word("*", _), first, rest @ ..] => {
-                rest.iter().try_fold(linear(first)?, |all, part| {
-                    product(all, linear(part)?, place)
-                })
-            }
-            [Sexp::Word("/", _), a, b] => quotient(linear(a)?, &linear(b)?, place),
+            [Sexp::Word("*", _), first, rest @ ..] => rest
+                .iter()
+                .try_fold(of(first)?, |all, part| product(all, of(part)?, place)),
+            [Sexp::Word("/", _), a, b] => quotient(of(a)?, &of(b)?, place),
             _ => Err(place.error("expected +, -, * or / of numbers and variables".to_owned())),
         },
     }
 }
 
-fn sum(parts: &[Sexp<'_>], sign: f64, place: Place) -> Result<Linear, VnnlibError> {
+/// A variable or a number.
+fn leaf(expression: &Sexp<'_>, names: &Names<'_>) -> Result<Linear, VnnlibError> {
+    let place = expression.place();
+    if let Some(variable) = names.variable(expression)? {
+        return Ok(Linear {
+            terms: BTreeMap::from([(variable, BigRational::one())]),
+            constant: BigRational::zero(),
+        });
+    }
+    let number = match expression {
+        Sexp::Word(word, _) => decimal::value(word),
+        _ => None,
+    };
+    let constant = number.ok_or_else(|| {
+        let most = decimal::MOST_DIGITS;
+        place.error(format!(
+            "{} is neither a variable nor a number of at most {most} digits and with an exponent of at most {most}",
+            expression.word()
+        ))
+    })?;
+    Ok(Linear {
+        terms: BTreeMap::new(),
+        constant,
+    })
+}
+
+fn sum(
+    parts: &[Sexp<'_>],
+    sign: f64,
+    names: &Names<'_>,
+    place: Place,
+) -> Result<Linear, VnnlibError> {
     let mut total = Linear::default();
     for part in parts {
-        total.add(linear(part)?, sign, place)?;
+        total.add(linear(part, names)?, sign, place)?;
     }
     Ok(total)
 }

@@ -24,14 +24,24 @@ impl Place {
 #[derive(Clone, Debug)]
 pub(super) enum Sexp<'a> {
     Word(&'a str, Place),
+    /// A word with something in brackets behind it.
+    Element(&'a str, &'a str, Place),
     List(Vec<Sexp<'a>>, Place),
 }
 
 impl Sexp<'_> {
+    /// Its word, or the beginning of a long one; empty of a list.
+    pub(super) fn word(&self) -> String {
+        match self {
+            Self::Word(word, _) | Self::Element(word, _, _) => format!("{word:.80}"),
+            Self::List(..) => String::new(),
+        }
+    }
+
     /// Where it starts.
     pub(super) fn place(&self) -> Place {
         match self {
-            Self::Word(_, place) | Self::List(_, place) => *place,
+            Self::Word(_, place) | Self::Element(_, _, place) | Self::List(_, place) => *place,
         }
     }
 }
@@ -68,9 +78,32 @@ pub(super) fn parse(text: &str) -> Result<Vec<Sexp<'_>>, VnnlibError> {
                     }
                     1
                 }
+                b'[' => {
+                    let end = rest.find(']').ok_or_else(|| {
+                        place.error("a '[' that is not closed in its line".to_owned())
+                    })?;
+                    let last = open.last_mut().and_then(|outer| outer.0.last_mut());
+                    let Some(Sexp::Word(word, at)) = last.as_deref() else {
+                        return Err(place.error("a '[' that follows no word".to_owned()));
+                    };
+                    let element = Sexp::Element(word, &rest[1..end], *at);
+                    if let Some(last) = last {
+                        *last = element;
+                    }
+                    end + 1
+                }
+                b'"' => {
+                    let end = rest[1..].find('"').ok_or_else(|| {
+                        place.error("a '\"' that is not closed in its line".to_owned())
+                    })?;
+                    if let Some(outer) = open.last_mut() {
+                        outer.0.push(Sexp::Word(&rest[..end + 2], place));
+                    }
+                    end + 2
+                }
                 _ => {
                     let end = rest
-                        .find(|c: char| c.is_whitespace() || c == '(' || c == ')')
+                        .find(|c: char| c.is_whitespace() || matches!(c, '(' | ')' | '['))
                         .unwrap_or(rest.len());
                     if let Some(outer) = open.last_mut() {
                         outer.0.push(Sexp::Word(&rest[..end], place));

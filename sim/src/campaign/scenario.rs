@@ -9,7 +9,7 @@ use cede_controller::{
     Class, Contract, ContractBuilder, Footprint, Junction, Point, Precedence, Route, RouteConflict,
     Vector, Zone,
 };
-use rand::RngExt;
+use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::f32::consts::{FRAC_PI_2, TAU};
 
@@ -155,6 +155,18 @@ const APPROACH: f32 = 60.0;
 const EXIT: f32 = 400.0;
 
 impl Scenario {
+    /// The scenario of `setup` that [`campaign`](super::campaign) runs with `seed`.
+    #[must_use]
+    pub fn of_seed(setup: Setup, seed: u64) -> Option<Self> {
+        Self::random(setup, &mut Pcg64::seed_from_u64(seed))
+    }
+
+    /// The junction of its vehicles.
+    #[must_use]
+    pub const fn junction(&self) -> &Crossing {
+        &self.junction
+    }
+
     /// A random scenario with as many vehicles as `setup` asks for, or fewer if there is no room;
     /// `None` without room for two, or if their number is out of range.
     #[must_use]

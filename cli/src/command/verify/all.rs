@@ -24,7 +24,7 @@ use steps::Step;
 
 /// The text below the options in `cede help verify all`.
 const HELP: &str = "\
-Runs the checks of `cede verify lemmas`, `margins`, `policy`, `reach`, `campaign` and `beyond`, the Rocq proofs
+Runs the checks of `cede verify lemmas`, `margins`, `zones`, `policy`, `reach`, `campaign` and `beyond`, the Rocq proofs
 (proofs/check.sh, if coqc is on the search path) and the tests that the safety file names, and checks that file
 (docs/safety/) itself: gaps, and names of what is not there. Then it says of each requirement whether it is proved,
 tested, skipped or open, and of each assumption of use what monitors it. Run it in a clone of the repository.

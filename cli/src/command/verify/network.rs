@@ -23,7 +23,7 @@ pub(crate) struct Network {
     /// The network, ONNX.
     #[arg(long, value_name = "FILE")]
     onnx: PathBuf,
-    /// The property, VNN-LIB 1.0.
+    /// The property, VNN-LIB 1.0 or 2.0.
     #[arg(long, value_name = "FILE")]
     vnnlib: PathBuf,
     /// Time limit in seconds.
@@ -146,7 +146,7 @@ fn as_json(answer: &Answer, report: Option<&Report>, start: Instant) -> String {
 /// What may pass beyond the time limit before nothing is waited for any more.
 const GRACE: Duration = Duration::from_millis(500);
 const ONNX: &str = "--onnx a feed-forward network in ONNX";
-const VNNLIB: &str = "--vnnlib a property in VNN-LIB 1.0";
+const VNNLIB: &str = "--vnnlib a property in VNN-LIB 1.0 or 2.0";
 
 /// Reads a time limit.
 fn seconds(text: &str) -> Result<f64, String> {

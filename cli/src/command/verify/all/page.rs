@@ -161,7 +161,12 @@ fn group_of(first: &Item, items: &[Item]) -> String {
     };
     let numbers = matches!(
         first.kind,
-        Kind::Margin | Kind::Property | Kind::Scenario | Kind::Campaign | Kind::Beyond
+        Kind::Margin
+            | Kind::Zones
+            | Kind::Property
+            | Kind::Scenario
+            | Kind::Campaign
+            | Kind::Beyond
     );
     let one = |item: &Item| {
         let name = path.map_or(item.name.as_str(), |path| &item.name[path.len() + 2..]);

@@ -3,6 +3,7 @@
 use super::super::beyond::{REPORTED, WITHIN};
 use super::super::campaign;
 use super::super::checked::Checked;
+use super::super::zones::NAMES;
 use super::super::{policy, reach};
 use super::steps::{Step, records};
 use crate::safety::{Known, SafetyFile, defects};
@@ -43,6 +44,7 @@ pub(super) fn known() -> Known {
     Known {
         lemmas: lemmas().iter().map(|lemma| owned(lemma.id)).collect(),
         margins: Predicate::ALL.map(|it| owned(it.name())).to_vec(),
+        zones: NAMES.map(owned).to_vec(),
         campaign: setups.map(owned).collect(),
         beyond: [WITHIN, REPORTED].map(owned).to_vec(),
         records: records(),

@@ -7,6 +7,7 @@ use super::super::lemmas::Lemmas;
 use super::super::margins::Margins;
 use super::super::policy::Policy;
 use super::super::reach::Reach;
+use super::super::zones::Zones;
 use crate::failure::Failure;
 use clap::Command;
 use serde::Serialize;
@@ -150,7 +151,7 @@ fn check<C: Check>(line: &str) -> Result<Checked, Failure> {
 }
 
 /// What is run, in this order.
-pub(super) fn plans(quick: bool) -> [Plan; 7] {
+pub(super) fn plans(quick: bool) -> [Plan; 8] {
     let plan = |name, lines: [&'static str; 2], check| Plan {
         name,
         line: lines[usize::from(quick)],
@@ -166,6 +167,7 @@ pub(super) fn plans(quick: bool) -> [Plan; 7] {
             ["margins", "margins --boxes 400000"],
             check::<Margins>,
         ),
+        plan("zones", same("zones"), check::<Zones>),
         plan(
             "campaign",
             ["campaign --steps 10000000", "campaign --steps 1000000"],
