@@ -9,7 +9,8 @@ use crate::policy::Policy;
 use crate::policy::pair::{Pair, Part, VehicleState};
 use crate::policy::svo;
 use crate::policy::traffic::{NearbyVehicle, TrafficContext};
-use crate::shield::{Contract, EnterError, NotReady, Plan, Shield, door};
+use crate::shield::door::{self, Admitted};
+use crate::shield::{Contract, EnterError, NotReady, Plan, Shield};
 use heapless::Vec;
 
 /// Acceleration (m/s²) that is proposed when there is nobody left to meet.
@@ -150,7 +151,8 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
     ///
     /// The policy is asked about the nearest `N` of those whom the ego has yet to meet, the most restrictive of its
     /// proposals passes to the shield, and the shield considers everybody at once. With nobody left to meet, the ego
-    /// accelerates gently up to the contract's speed. For those over whom it has precedence it does not brake, and sets
+    /// accelerates gently up to the contract's speed. Nothing is proposed that exceeds the speed limits of its path, or the
+    /// junction's lateral acceleration in bends ([`crate::Profile`]). For those over whom it has precedence it does not brake, and sets
     /// off. See [`Shield::filter`].
     ///
     /// Cost: at most `N` passes through the network, and the shield's. The
@@ -195,13 +197,16 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
         let mut proposed = 0.0;
         if self.shield.is_new(now) {
             // The shield finds a fault again and carries on with its plan.
-            if let Ok(asked) = self.ask(observation, wanted.first) {
+            if let Ok((asked, limit)) = self.ask(observation, wanted.first) {
                 self.prediction = asked.map(|(_, prediction)| prediction);
                 proposed = match asked {
                     None => wanted.free,
                     Some((acceleration, _)) if acceleration < wanted.most => acceleration,
                     Some(_) => wanted.most,
                 };
+                if limit < proposed {
+                    proposed = limit;
+                }
             } else {
                 self.prediction = None;
             }
@@ -218,23 +223,25 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
     ///
     /// Cost: at most `N` passes through the network. Finite and within ± 3.
     pub fn proposal(&mut self, observation: &Observation<'_>) -> f32 {
-        self.ask(observation, f32::MIN).map_or(0.0, |asked| {
+        self.ask(observation, f32::MIN).map_or(0.0, |(asked, _)| {
             asked.map_or(FREE, |(acceleration, _)| acceleration)
         })
     }
 
     /// What the policy proposes, and at least `first` (m/s²) for those over whom the ego has precedence; nothing, if nobody
-    /// is left to meet. Not inlined, because its stack is free again when the shield needs its own.
+    /// is left to meet. And what the path's profile allows (m/s²). Not inlined, because its stack is free again when the shield needs its own.
     #[inline(never)]
     fn ask(
         &mut self,
         observation: &Observation<'_>,
         first: f32,
-    ) -> Result<Option<(f32, Prediction)>, Fault> {
+    ) -> Result<(Option<(f32, Prediction)>, f32), Fault> {
         let (way, contract) = (self.shield.way(), self.shield.contract());
-        let ego = door::ego(way, contract, &observation.ego)?;
+        let ego = door::ego(way, contract, &observation.ego)?.vehicle;
         let nearby = nearby::<N>(way, contract, &ego, observation.tracks);
-        Ok(self.propose(way, &ego, &nearby, first))
+        let (profile, response) = (way.profile(), contract.response());
+        let limit = profile.acceleration(ego.s, ego.speed, response);
+        Ok((self.propose(way, &ego, &nearby, first), limit))
     }
 
     fn propose(
@@ -339,7 +346,7 @@ fn nearby<'j, const N: usize>(
         let Some((path, conflict)) = there else {
             continue;
         };
-        let Ok(vehicle) = door::track(way, contract, track, candidate) else {
+        let Ok(Admitted { vehicle, .. }) = door::track(way, contract, track, candidate) else {
             continue;
         };
         let ahead = |zone: &crate::Zone| ego.s < zone.ego.to && vehicle.s < zone.other.to;
@@ -459,7 +466,7 @@ mod tests {
                 ego: on(&site, 0, 0.0, 5.0),
                 tracks: &tracks,
             };
-            approach.ask(&seen, FREE).unwrap().unwrap()
+            approach.ask(&seen, FREE).unwrap().0.unwrap()
         };
         let (a, c) = ((1, 5.0, 4.0), (3, 20.0, 9.0));
         let (first, third, both) = (decide(&[a]), decide(&[c]), decide(&[a, c]));

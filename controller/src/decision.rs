@@ -1,6 +1,7 @@
 //! What the controller decides, and why.
 
 use crate::fault::Fault;
+use crate::headroom::Headroom;
 use crate::shield::{Contract, Plan};
 use core::fmt;
 
@@ -30,6 +31,9 @@ pub struct Decision {
     pub unwatched: Option<u16>,
     /// What the policy thinks of the other that restricts the ego most, if it was asked.
     pub prediction: Option<Prediction>,
+    /// How near each monitored condition of the contract is to its limit.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub headroom: Headroom,
 }
 
 /// What the policy thinks of one other.
@@ -146,6 +150,7 @@ impl Decision {
             fault: None,
             unwatched: None,
             prediction: None,
+            headroom: Headroom::NONE,
         }
     }
 }

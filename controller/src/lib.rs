@@ -90,6 +90,7 @@ pub mod dangerous;
 mod decision;
 mod fault;
 pub mod geometry;
+mod headroom;
 mod instant;
 pub mod junction;
 pub mod kinematics;
@@ -103,11 +104,12 @@ pub use approach::{Approach, Drive, FREE};
 pub use decision::{Action, Breach, Cause, Decision, Intervention, Prediction, Reason};
 pub use fault::{Fault, Field, InputFault, Subject};
 pub use geometry::{Footprint, Point, Pose, UnitVector, Vector};
+pub use headroom::{Condition, Headroom, Room};
 pub use instant::Instant;
 pub use junction::{
     CONFLICT_RADIUS, Class, ConflictKind, Control, Junction, JunctionBuilder, JunctionError,
-    MAX_OTHERS, Path, PathId, Polyline, Priority, RightOfWay, Route, RouteConflict, RouteError,
-    Span, Way, Zone,
+    MAX_OTHERS, Path, PathId, Polyline, Priority, Profile, RightOfWay, Route, RouteConflict,
+    RouteError, Span, SpeedLimit, Way, Zone,
 };
 pub use observation::{Candidate, MAX_CANDIDATES, Observation, Track, Vehicle};
 pub use policy::{

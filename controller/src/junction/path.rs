@@ -3,12 +3,28 @@
 use crate::geometry::{Footprint, UnitVector};
 use crate::junction::control::Control;
 use core::ops::Range;
+use heapless::Vec;
 
 /// Largest side of a footprint in metres.
 pub const MAX_FOOTPRINT: f32 = 40.0;
 
 /// Longest path of a junction in metres: an `f32` resolves arc lengths up to it to 0.03 mm.
 pub const MAX_PATH_LENGTH: f32 = 512.0;
+
+/// Most speed limits of a path.
+pub const MAX_LIMITS: usize = 4;
+
+/// Highest speed limit in m/s.
+pub const MAX_SPEED_LIMIT: f32 = 100.0;
+
+/// How fast an ego drives from some place of its path on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpeedLimit {
+    /// Arc length (m) of the footprint's centre from which it holds, until the next one.
+    pub from: f32,
+    /// In m/s, in (0, [`MAX_SPEED_LIMIT`]].
+    pub speed: f32,
+}
 
 /// What kind of vehicle: a track has one, and so has a path.
 #[non_exhaustive]
@@ -56,6 +72,8 @@ pub struct Path {
     pub(super) line: f32,
     pub(super) waits_at_line: bool,
     pub(super) control: Control,
+    /// In the order of their places.
+    pub(super) limits: Vec<SpeedLimit, MAX_LIMITS>,
     /// Its points in the pool.
     pub(super) range: Range<usize>,
 }
@@ -89,6 +107,12 @@ impl Path {
     #[must_use]
     pub const fn waits_at_line(&self) -> bool {
         self.waits_at_line
+    }
+
+    /// The speed limits along the path, in order.
+    #[must_use]
+    pub fn limits(&self) -> &[SpeedLimit] {
+        &self.limits
     }
 
     /// What obliges a vehicle to give way where it enters the junction; unknown unless the builder was told.

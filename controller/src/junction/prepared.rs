@@ -41,6 +41,8 @@ pub struct Junction<const R: usize, const P: usize, const E: usize = R> {
     /// How each path that can be entered meets each path.
     pub(super) conflicts: Vec<[RouteConflict; R], E>,
     pub(super) tolerance: f32,
+    /// Lateral acceleration (m/s²) in bends, at most.
+    pub(super) lateral: f32,
 }
 
 impl<const R: usize, const P: usize, const E: usize> Junction<R, P, E> {
@@ -93,6 +95,7 @@ impl<const R: usize, const P: usize, const E: usize> Junction<R, P, E> {
             arc: &self.arc,
             conflicts: row.get(..self.paths.len())?,
             tolerance: self.tolerance,
+            lateral: self.lateral,
         })
     }
 

@@ -33,6 +33,7 @@ use rules::{Rules, Sound};
 
 use crate::decision::{Action, Breach, Cause, Decision, Intervention, Reason};
 use crate::fault::Fault;
+use crate::headroom::{Headroom, Room};
 use crate::instant::Instant;
 use crate::junction::zone::FAR;
 use crate::junction::{Junction, MAX_OTHERS, PathId, RightOfWay, Way};
@@ -41,6 +42,7 @@ use actuation::Inherited;
 use choice::{allowed, most, nearest};
 use clock::{Clock, Tick};
 use core::marker::PhantomData;
+use door::Admitted;
 use hazard::{Hazard, Hazards, Passage};
 use memory::Memory;
 use own::Own;
@@ -300,13 +302,17 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         }
         let on_time = self.memory.call(&self.contract, now);
         let mut decision = match door::ego(self.way, &self.contract, &observation.ego) {
-            Ok(ego) => {
+            Ok(Admitted { vehicle, pose }) => {
                 let recheck = !on_time || self.replaced;
                 self.replaced = false;
-                self.judge((now, tick), &ego, observation, (proposal, recheck))
+                let mut decision =
+                    self.judge((now, tick), &vehicle, observation, (proposal, recheck));
+                decision.headroom.note_pose(None, pose);
+                decision
             }
             Err(fault) => self.blind((now, tick), fault, on_time),
         };
+        decision.headroom.period = jitter_left(tick);
         if let Some(fault) = self.off_period(tick) {
             decision.fault = decision.fault.or(Some(fault));
         }
@@ -325,7 +331,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         let contract = &self.contract;
         let ego = door::ego(self.way, contract, &observation.ego).map_err(NotReady::Fault)?;
         let mut next = self.copy();
-        let (ego, _) = next.memory.note(contract, &ego, now);
+        let (ego, _) = next.memory.note(contract, &ego.vehicle, now);
         let findings = next.look((now, Tick::First), &ego, observation);
         let mut hazards = Hazards::new();
         hazards.add::<N, R>(contract, self.way, (&ego, &next.tracks), findings.closed);
@@ -367,7 +373,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         }
         let contract = &self.contract;
         let ego = door::ego(self.way, contract, &observation.ego)?;
-        let ego = Own::new(contract, &ego, -FAR);
+        let ego = Own::new(contract, &ego.vehicle, -FAR);
         let mut tracks = Tracks::<N>::new();
         let now = Instant::default();
         let findings = tracks.note::<R>(contract, self.way, now, &ego, observation);
@@ -432,12 +438,15 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         let speed = self.memory.least_speed(&self.contract, now);
         let acceleration = self.carry_on(most(&self.contract, speed, in_effect));
         let plan = self.memory.plan();
+        let mut headroom = Headroom::NONE;
+        headroom.note_fault(fault);
         Decision {
             acceleration,
             cause: Cause::Fallback(if plan.is_some() { fault } else { Fault::NoPlan }),
             margin: 0.0,
             plan,
             fault: Some(fault),
+            headroom,
             ..Decision::none(&self.contract)
         }
     }
@@ -536,12 +545,15 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         (proposal, recheck): (f32, bool),
     ) -> Decision {
         let (now, _) = when;
-        let (ego, possible) = self.memory.note(&self.contract, ego, now);
-        let (ego, deviated) = (&ego, !possible);
+        let (ego, moved) = self.memory.note(&self.contract, ego, now);
+        let (ego, deviated) = (&ego, moved.is_some_and(|rooms| !Room::hold(rooms)));
         if deviated {
             self.tracks.count_on_nothing();
         }
-        let findings = self.look(when, ego, observation);
+        let mut findings = self.look(when, ego, observation);
+        if let Some(rooms) = moved {
+            findings.headroom.note_ego(rooms);
+        }
         let mut hazards = Hazards::new();
         hazards.add::<N, R>(
             &self.contract,
@@ -569,6 +581,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
             breach,
             fault: findings.fault,
             unwatched: findings.closed.map(|closed| closed.number),
+            headroom: findings.headroom,
             ..self.decide(&scene, now, proposal)
         }
     }
@@ -684,6 +697,17 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         };
         self.memory.shorten(R::tail);
         allowed(&contract.ego, most, next(contract, plan))
+    }
+}
+
+/// What a call leaves of the jitter (s), if there was one before it.
+fn jitter_left(tick: Tick) -> Option<Room> {
+    match tick {
+        Tick::Next { left, .. } => {
+            let [left, most] = left.map(|micros| micros as f32 * 1.0e-6);
+            Some(Room::of(left, most))
+        }
+        _ => None,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::bounds::Bounds;
 use super::contract::Contract;
-use super::door;
+use super::door::{self, Admitted};
 use super::hazard::{self, Hazard};
 use super::own::Own;
 use super::precedence::{PairMemory, ZoneSet, has};
@@ -10,6 +10,7 @@ use super::rules::Rules;
 use super::unwatched::{Closed, Entry, Place, Unwatched, take, unplaced};
 use super::waiting::{RestState, Sighting};
 use crate::fault::Fault;
+use crate::headroom::{Headroom, Room};
 use crate::instant::Instant;
 use crate::junction::zone::{FAR, MAX_ZONES, Zone};
 use crate::junction::{PathId, Way};
@@ -66,6 +67,17 @@ pub(crate) struct Findings {
     pub(crate) fault: Option<Fault>,
     /// Zones that nobody watches.
     pub(crate) closed: Option<Closed>,
+    pub(crate) headroom: Headroom,
+}
+
+impl Findings {
+    /// Track `number` moved to where so much is left of its place and speed.
+    fn moved(&mut self, number: u16, rooms: [Room; 2]) {
+        self.headroom.note_track(number, rooms);
+        if !Room::hold(rooms) {
+            self.breach = self.breach.or(Some(number));
+        }
+    }
 }
 
 /// The others that matter, at most `N`.
@@ -212,6 +224,11 @@ impl<const N: usize> Tracks<N> {
         let (number, path) = (track.number, candidate.path);
         let known = |other: &&mut Other| other.number == number && other.path == path;
         let checked = door::track(way, contract, track, candidate);
+        match checked {
+            Ok(Admitted { pose, .. }) => findings.headroom.note_pose(Some(number), pose),
+            Err(fault) => findings.headroom.note_fault(fault),
+        }
+        let checked = checked.map(|admitted| admitted.vehicle);
         match (self.watched.iter_mut().find(known), checked) {
             // Two vehicles of one number on one path: there is no place to watch the second one.
             (Some(other), _) if other.seen => {
@@ -450,18 +467,19 @@ impl Other {
             return;
         };
         let bounds = R::coast(contract, base, self.at.seconds_since(at));
-        if bounds.allow(contract, vehicle.s, vehicle.speed) {
+        let rooms = bounds.rooms(contract, vehicle.s, vehicle.speed);
+        let possible = Room::hold(rooms);
+        // Else it is another one, by the number of one that has left.
+        if possible || entry.from < FAR {
             self.news = News::Watched;
+            findings.moved(self.number, rooms);
+        }
+        if possible {
             self.settled = settled;
             // A plan in force that is safe from it enters no lane ahead of it without the gap.
             self.counted = if entry.holds { ZoneSet::MAX } else { 0 };
-            return;
-        }
-        entry.holds = false;
-        // Another one, by the number of one that has left.
-        if entry.from < FAR {
-            self.news = News::Watched;
-            findings.breach = findings.breach.or(Some(self.number));
+        } else {
+            entry.holds = false;
         }
     }
 
@@ -476,7 +494,11 @@ impl Other {
         let (s, speed) = (vehicle.s, vehicle.speed);
         let seen = Bounds::sensed(contract, s, speed);
         let least = self.bounds.s.from;
-        let possible = self.bounds.allow(contract, s, speed);
+        let rooms = self.bounds.rooms(contract, s, speed);
+        let possible = Room::hold(rooms);
+        if possible || !self.gone {
+            findings.moved(self.number, rooms);
+        }
         (self.speed, self.base, self.at) = (speed, seen, now);
         self.bounds = seen;
         self.seen = true;
@@ -497,7 +519,6 @@ impl Other {
             // Perhaps it is another one: nothing is known of who came first.
             self.pair = PairMemory::default();
             self.pair.forget();
-            findings.breach = findings.breach.or(Some(self.number));
         }
     }
 
