@@ -218,7 +218,7 @@ mod tests {
     proptest! {
         #[test]
         fn limits_and_bends_are_kept_without_a_jerk(
-            radius in 5.0_f32..40.0, points in 6_u8..40, speed in 3.0_f32..8.0, first in 8.0_f32..14.0, second in 3.0_f32..14.0, at in 90.0_f32..140.0,
+            radius in 5.0_f32..25.0, points in 12_u8..40, speed in 3.0_f32..8.0, first in 8.0_f32..14.0, second in 3.0_f32..14.0, at in 90.0_f32..140.0,
         ) {
             let site = site(&bend(radius, points), &[(0.0, first), (at, second)], Some(2.0)).unwrap();
             let places = drive(&site, speed);
