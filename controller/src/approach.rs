@@ -4,13 +4,13 @@ use crate::decision::{Decision, Prediction};
 use crate::fault::Fault;
 use crate::instant::Instant;
 use crate::junction::{ConflictKind, Junction, MAX_OTHERS, Path, PathId, RouteConflict, Way};
-use crate::observation::{Observation, Track, Vehicle};
+use crate::observation::{Observation, Sight, Track, Vehicle};
 use crate::policy::Policy;
 use crate::policy::pair::{Pair, Part, VehicleState};
 use crate::policy::svo;
 use crate::policy::traffic::{NearbyVehicle, TrafficContext};
 use crate::shield::door::{self, Admitted};
-use crate::shield::{Contract, EnterError, NotReady, Plan, Shield};
+use crate::shield::{Contract, EnterError, NotReady, Plan, Shield, SightError};
 use heapless::Vec;
 
 /// Acceleration (m/s²) that is proposed when there is nobody left to meet.
@@ -132,6 +132,14 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
     /// considers the tracks alone.
     pub const fn set_traffic(&mut self, around: TrafficContext) {
         self.around = around;
+    }
+
+    /// See [`Shield::set_sight`].
+    ///
+    /// # Errors
+    /// See [`SightError`]; nothing is changed then.
+    pub fn set_sight(&mut self, now: Instant, sights: &[Sight]) -> Result<(), SightError> {
+        self.shield.set_sight(now, sights)
     }
 
     /// See [`Shield::forget`].
@@ -531,6 +539,6 @@ mod tests {
     #[test]
     fn an_approach_fits_its_share_of_the_memory() {
         let size = size_of::<Approach<'_, '_>>();
-        assert!(size <= 2560, "{size}");
+        assert!(size <= 2880, "{size}");
     }
 }

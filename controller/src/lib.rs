@@ -111,7 +111,7 @@ pub use junction::{
     MAX_OTHERS, Path, PathId, Polyline, Priority, Profile, RightOfWay, Route, RouteConflict,
     RouteError, Span, SpeedLimit, Way, Zone,
 };
-pub use observation::{Candidate, MAX_CANDIDATES, Observation, Track, Vehicle};
+pub use observation::{Candidate, MAX_CANDIDATES, Observation, Sight, Track, Vehicle};
 pub use policy::{
     Crosser, FeatureSet, Leader, Mlp, NearbyVehicle, Pair, Part, Perspective, Policy,
     TrafficContext, VehicleState, Weights, WeightsError,
@@ -119,6 +119,6 @@ pub use policy::{
 pub use real::{Elementary, Real};
 pub use separation::OrientedBox;
 pub use shield::{
-    Bounds, Contract, ContractBuilder, ContractError, Ego, EnterError, Follower, NotReady, Other,
-    Plan, Precedence, Shield,
+    Bounds, Contract, ContractBuilder, ContractError, Ego, EnterError, Follower, MAX_SIGHTS,
+    NotReady, Other, Plan, Precedence, Shield, SightError,
 };

@@ -12,6 +12,7 @@ mod clock;
 mod contract;
 pub(crate) mod door;
 mod hazard;
+mod hidden;
 pub mod margin;
 mod memory;
 mod own;
@@ -28,6 +29,7 @@ pub(crate) mod waiting;
 
 pub use bounds::Bounds;
 pub use contract::{Contract, ContractBuilder, ContractError, Ego, Follower, Other, Precedence};
+pub use hidden::{MAX_SIGHTS, SightError};
 pub use plan::Plan;
 use rules::{Rules, Sound};
 
@@ -37,13 +39,13 @@ use crate::headroom::{Headroom, Room};
 use crate::instant::Instant;
 use crate::junction::zone::FAR;
 use crate::junction::{Junction, MAX_OTHERS, PathId, RightOfWay, Way};
-use crate::observation::{Observation, Vehicle};
+use crate::observation::{Observation, Sight, Vehicle};
 use actuation::Inherited;
 use choice::{allowed, most, nearest};
 use clock::{Clock, Tick};
 use core::marker::PhantomData;
 use door::Admitted;
-use hazard::{Hazard, Hazards, Passage};
+use hazard::{Hazard, Hazards, Passage, Who};
 use memory::Memory;
 use own::Own;
 use precedence::{PairMemory, Right};
@@ -272,6 +274,19 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
     /// to be somewhere until it has certainly left.
     pub fn forget(&mut self, number: u16) {
         self.tracks.forget(number);
+    }
+
+    /// Says of some paths how much of them is in sight at `now`, for the call at that time: before each of these places somebody
+    /// may be, and is expected to be in every decision to come. Where nothing is said of a path that was named before, those who
+    /// were out of sight may have come on, as far as the contract lets them. A path that is never named is in sight.
+    ///
+    /// A path of which the view may ever be limited should be named from the first call on: one that is named later is news,
+    /// and may leave the ego without a plan. Nobody out of sight is assumed to give way.
+    ///
+    /// # Errors
+    /// See [`SightError`]; nothing is changed then.
+    pub fn set_sight(&mut self, now: Instant, sights: &[Sight]) -> Result<(), SightError> {
+        self.tracks.hidden.tell(self.way, now, sights)
     }
 
     /// The acceleration for the period that begins `now`: `proposal` (m/s²) if it is safe.
@@ -607,8 +622,11 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
             .unwatched_hold::<R>(context, scene.ego, all, |hazards| hazards.iter().all(holds));
         if !(watched_hold && unwatched_hold) {
             self.void();
-        } else if all {
-            self.memory.confirmed(now);
+        } else {
+            self.tracks.hidden.holds = true;
+            if all {
+                self.memory.confirmed(now);
+            }
         }
     }
 
@@ -682,8 +700,11 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
             .iter()
             .filter(|hazard| hazard.target <= verified.passes)
         {
-            let other = self.tracks.iter_mut().nth(hazard.place.into());
-            if let (Passage::Ahead { .. }, Some(other)) = (hazard.passage, other) {
+            let (Passage::Ahead { .. }, Who::Watched { place, .. }) = (hazard.passage, hazard.who)
+            else {
+                continue;
+            };
+            if let Some(other) = self.tracks.iter_mut().nth(place.into()) {
                 other.counted |= 1 << hazard.zone;
             }
         }
@@ -708,6 +729,20 @@ fn jitter_left(tick: Tick) -> Option<Room> {
             Some(Room::of(left, most))
         }
         _ => None,
+    }
+}
+
+/// Why the ego does not pass somebody out of sight on `path`, whom it would have passed after `clears` (s).
+fn hidden_reason(contract: &Contract, path: PathId, passage: Passage, clears: f32) -> Reason {
+    let (distance, speed) = match passage {
+        Passage::Before { distance, speed } => (distance, speed),
+        Passage::Ahead { gap, speed, .. } => (gap, speed),
+        Passage::Never => (0.0, 0.0),
+    };
+    Reason::Hidden {
+        path: u8::try_from(path.index()).unwrap_or(u8::MAX),
+        arrives: margin::arrival(contract, distance, speed),
+        clears,
     }
 }
 
@@ -812,11 +847,14 @@ impl Scene<'_> {
             needs,
         };
         for hazard in self.hazards.iter() {
-            let other = hazard.other;
             if R::stops_short(contract, hazard.rest, needs) >= 0.0 {
                 continue;
             }
             let (clears, ego_speed) = margin::clearing(contract, departure.least, hazard.target);
+            let other = match hazard.who {
+                Who::Watched { number, .. } | Who::Unwatched(number) => number,
+                Who::Hidden(_) => 0,
+            };
             stop = Reason::Stop {
                 other,
                 available: hazard.rest,
@@ -825,6 +863,9 @@ impl Scene<'_> {
             if passage_margin::<R>(contract, hazard, clears, ego_speed) >= 0.0 {
                 needs = R::rest(contract, departure.most, clears);
                 continue;
+            }
+            if let Who::Hidden(path) = hazard.who {
+                return hidden_reason(contract, path, hazard.passage, clears);
             }
             return match hazard.passage {
                 Passage::Before { distance, speed } => Reason::Arrival {

@@ -12,6 +12,7 @@ mod actuation;
 mod door;
 mod edges;
 mod headroom;
+mod hidden;
 mod memory;
 
 const WORST: Contract = Contract::WORST_CASE;

@@ -4,6 +4,7 @@ use super::bounds::Bounds;
 use super::contract::Contract;
 use super::door::{self, Admitted};
 use super::hazard::{self, Hazard};
+use super::hidden::Hidden;
 use super::own::Own;
 use super::precedence::{PairMemory, ZoneSet, has};
 use super::rules::Rules;
@@ -12,7 +13,7 @@ use super::waiting::{RestState, Sighting};
 use crate::fault::Fault;
 use crate::headroom::{Headroom, Room};
 use crate::instant::Instant;
-use crate::junction::zone::{FAR, MAX_ZONES, Zone};
+use crate::junction::zone::{FAR, MAX_ZONES, Span, Zone};
 use crate::junction::{PathId, Way};
 use crate::observation::{Candidate, Observation, Track, Vehicle};
 use heapless::Vec;
@@ -47,12 +48,15 @@ pub(crate) struct Other {
     pub(crate) claims: ZoneSet,
 }
 
-/// What is new of another in the present observation. Whatever it is, the remembered plan has not been verified against it.
+/// What is new of another in the present observation. The remembered plan has not been verified against one that appeared, is
+/// watched from now on or broke the contract.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum News {
     None,
     /// It was not there before.
     Appeared,
+    /// It was out of sight, where the remembered plan counted on it.
+    Emerged,
     /// It was there, and nobody watched it.
     Watched,
     /// It moved beyond the contract's bounds.
@@ -85,6 +89,7 @@ impl Findings {
 pub(crate) struct Tracks<const N: usize> {
     watched: Vec<Other, N>,
     unwatched: Unwatched,
+    pub(crate) hidden: Hidden,
 }
 
 impl<const N: usize> Tracks<N> {
@@ -92,6 +97,7 @@ impl<const N: usize> Tracks<N> {
         Self {
             watched: Vec::new(),
             unwatched: Unwatched::new(),
+            hidden: Hidden::new(),
         }
     }
 
@@ -112,6 +118,7 @@ impl<const N: usize> Tracks<N> {
 
     /// Until `now` everybody kept to `contract`, from now on to another one.
     pub(crate) fn rebase<R: Rules>(&mut self, contract: &Contract, now: Instant) {
+        self.hidden.rebase::<R>(contract);
         for other in &mut self.watched {
             (other.base, other.at) = (other.bounds, now);
         }
@@ -124,6 +131,7 @@ impl<const N: usize> Tracks<N> {
 
     /// There is no plan, or not the motion, on which the lanes that the ego enters ahead of somebody counted.
     pub(crate) fn count_on_nothing(&mut self) {
+        self.hidden.holds = false;
         self.watched.iter_mut().for_each(|other| other.counted = 0);
         self.unwatched
             .iter_mut()
@@ -132,6 +140,7 @@ impl<const N: usize> Tracks<N> {
 
     /// Where everybody may be at `now`, if nothing is seen.
     pub(crate) fn coast<R: Rules>(&mut self, contract: &Contract, now: Instant) {
+        self.hidden.advance(now);
         for other in &mut self.watched {
             other.seen = false;
             let least = other.bounds.s.from;
@@ -170,6 +179,7 @@ impl<const N: usize> Tracks<N> {
             let ahead = other.entry::<R>(way, ego.least, 0.0);
             other.gone |= ahead.is_none();
         }
+        self.hidden.look::<R>(contract);
         findings.closed = self.unwatched.end(way, ego.least);
         findings
     }
@@ -252,6 +262,8 @@ impl<const N: usize> Tracks<N> {
                 let mut other = Other::new(contract, number, path, &vehicle, now);
                 if let Some(entry) = self.unwatched.placed(number, path) {
                     other.follow::<R>(contract, &vehicle, entry, findings);
+                } else if let Some(source) = self.hidden.source::<R>(contract, path, &vehicle) {
+                    other.emerge(source, self.hidden.holds);
                 }
                 if let Some(conflict) = way.conflict(path) {
                     hazard::settle::<R>(contract, conflict.zones(), ego, &mut other);
@@ -380,8 +392,9 @@ impl<const N: usize> Tracks<N> {
         self.unwatched.iter_mut().all(|entry| entry.holds) && beyond.is_none_or(stays_out)
     }
 
-    /// A new plan stays out of everything that is closed.
+    /// A new plan stays out of everything that is closed, and is safe from everybody out of sight.
     pub(crate) fn unwatched_avoided(&mut self) {
+        self.hidden.holds = true;
         self.unwatched
             .iter_mut()
             .for_each(|entry| entry.holds = true);
@@ -427,7 +440,7 @@ impl Other {
     }
 
     /// One that appears, sensed at `speed` (m/s).
-    fn at(number: u16, path: PathId, speed: f32, bounds: Bounds, now: Instant) -> Self {
+    pub(super) fn at(number: u16, path: PathId, speed: f32, bounds: Bounds, now: Instant) -> Self {
         Self {
             number,
             path,
@@ -452,6 +465,24 @@ impl Other {
             base: self.base,
             at: self.at,
             settled: self.settled,
+        }
+    }
+
+    /// Notes that it comes from where nobody could see it, from `source`; and whether the plan in force is safe from whoever
+    /// was there.
+    fn emerge(&mut self, source: Bounds, holds: bool) {
+        let lower = |span: &mut Span, most: f32| {
+            if span.from <= most && most < span.to {
+                span.to = most;
+            }
+        };
+        lower(&mut self.bounds.s, source.s.to);
+        lower(&mut self.bounds.speed, source.speed.to);
+        self.base = self.bounds;
+        if holds {
+            self.news = News::Emerged;
+            // It enters no lane ahead of it without the gap.
+            self.counted = ZoneSet::MAX;
         }
     }
 

@@ -42,7 +42,7 @@ fn periods() -> impl Strategy<Value = Vec<Period>> {
 }
 
 /// Goes on for `time` at `acceleration`, forwards, up to 15 m/s.
-fn go([s, v]: [f64; 2], acceleration: f64, time: f64) -> [f64; 2] {
+pub(super) fn go([s, v]: [f64; 2], acceleration: f64, time: f64) -> [f64; 2] {
     let (mut s, mut v) = (s, v);
     let steps = 200;
     for _ in 0..steps {
