@@ -26,10 +26,14 @@ pub const CEDE_MAX_ROUTE_POINTS: usize = 64;
 /// Most zones of two paths.
 pub const CEDE_MAX_ZONES: usize = 3;
 
+/// Most speed limits of a path.
+pub const CEDE_MAX_LIMITS: usize = 4;
+
 const _: () = assert!(CEDE_MAX_ZONES == cede_controller::junction::zone::MAX_ZONES);
+const _: () = assert!(CEDE_MAX_LIMITS == cede_controller::junction::MAX_LIMITS);
 
 /// Words of eight bytes of a cede_junction.
-pub const CEDE_JUNCTION_WORDS: usize = 832;
+pub const CEDE_JUNCTION_WORDS: usize = 896;
 
 /// A junction: its paths, and how each two of them meet. Once built it does not change; it stays where it is for as long
 /// as an approach through it is used.
@@ -234,6 +238,36 @@ pub unsafe extern "C" fn cede_junction_set_tolerance(
     };
     // SAFETY: the header's contract of pointers.
     unsafe { told(build_up(junction, set), core::ptr::null_mut()) }
+}
+
+/// Sets the lateral acceleration (m/s^2), at most, that the ego is to have in bends, in (0, 20]; bends do not slow it down
+/// unless it is set. It bounds proposals; plans know nothing of it. cede_junction_build() checks it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cede_junction_set_lateral(
+    junction: *mut cede_junction,
+    lateral: f32,
+) -> cede_status {
+    let set = |builder: &mut Builder| {
+        builder.lateral(lateral);
+        Ok(())
+    };
+    // SAFETY: the header's contract of pointers.
+    unsafe { told(build_up(junction, set), core::ptr::null_mut()) }
+}
+
+/// Says that an ego on a path drives at `speed` (m/s) or slower from arc length `from` (m) on, until the next limit; up to
+/// CEDE_MAX_LIMITS of them, in any order. It bounds proposals; plans know nothing of it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cede_junction_add_speed_limit(
+    junction: *mut cede_junction,
+    path: u8,
+    from: f32,
+    speed: f32,
+    detail: *mut cede_detail,
+) -> cede_status {
+    let set = |builder: &mut Builder| builder.speed_limit(PathId::new(path), from, speed);
+    // SAFETY: the header's contract of pointers.
+    unsafe { told(build_up(junction, set), detail) }
 }
 
 /// Adds a path through `count` points, for vehicles of a class with this largest footprint, and writes its number. The
@@ -701,6 +735,32 @@ impl From<JunctionError> for cede_detail {
                 value,
                 length,
             } => about(cede_status::JunctionLine, path, value, length),
+            Error::SpeedLimit {
+                path,
+                from,
+                speed,
+                length,
+            } => {
+                let high = cede_controller::junction::MAX_SPEED_LIMIT;
+                if speed > 0.0 && speed <= high {
+                    about(cede_status::JunctionSpeedLimit, path, from, length)
+                } else {
+                    Self {
+                        excludes_low: 1,
+                        ..about(cede_status::JunctionSpeedLimit, path, speed, high)
+                    }
+                }
+            }
+            Error::TooManyLimits { path } => {
+                let capacity = CEDE_MAX_LIMITS as f32;
+                about(cede_status::JunctionTooManyLimits, path, 0.0, capacity)
+            }
+            Error::Lateral { value } => Self {
+                value,
+                high: cede_controller::junction::MAX_LATERAL,
+                excludes_low: 1,
+                ..Self::new(cede_status::JunctionLateral)
+            },
             Error::RightOfWay { path } => about(cede_status::JunctionRightOfWay, path, 0.0, 0.0),
             _ => cede_status::Other.into(),
         }

@@ -127,19 +127,18 @@ fn drive(case: &Case, told: bool) -> Wrong {
         guarded |= decision.plan.is_some();
         wrong.without_plan += u32::from(guarded && decision.plan.is_none());
         wrong.breaches += u32::from(decision.breach.is_some());
+        let (command, late) = (f64::from(decision.acceleration), 0.1 * f64::from(case.late));
+        own = go(go(own, before, late), command, 0.1 - late);
         for (i, other) in others.iter_mut().enumerate() {
             let wanted = f64::from(case.strangers[i].moods[(step / 6) % 8]);
             let cap = if seen[i] { 15.0 } else { f64::from(case.speed) };
-            let [s, v] = go(*other, wanted, 0.1);
-            *other = [s, v.min(cap)];
+            *other = go(*other, wanted.min((cap - other[1]).max(0.0) / 0.1), 0.1);
             let zone = zone(&site, ROADS[i]);
             let inside =
                 |span: Span, s: f64| (f64::from(span.from)..f64::from(span.to)).contains(&s);
-            wrong.overlaps +=
-                u32::from(guarded && inside(zone.ego, own[0]) && inside(zone.other, s));
+            let overlap = inside(zone.ego, own[0]) && inside(zone.other, other[0]);
+            wrong.overlaps += u32::from(guarded && overlap);
         }
-        let (command, late) = (f64::from(decision.acceleration), 0.1 * f64::from(case.late));
-        own = go(go(own, before, late), command, 0.1 - late);
         before = command;
         if own[0] > 100.0 {
             break;
