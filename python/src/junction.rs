@@ -299,6 +299,12 @@ impl Junction {
         Ok(self.way(path)?.profile().speed(s))
     }
 
+    /// The largest acceleration (m/s²) with which an ego on `path` keeps to limits and bends; infinite without them.
+    #[pyo3(signature = (path, s, speed, response = 0.1))]
+    fn allowed_acceleration(&self, path: u8, s: f32, speed: f32, response: f32) -> PyResult<f32> {
+        Ok(self.way(path)?.profile().acceleration(s, speed, response))
+    }
+
     /// A vehicle on `path` at arc length `s` (m), exactly on it.
     fn vehicle(&self, path: u8, s: f32, speed: f32) -> PyResult<Vehicle> {
         Ok(Vehicle::at(s, speed, self.polyline(path)?.pose(s)))

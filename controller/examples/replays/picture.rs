@@ -6,9 +6,9 @@ use std::fmt::{Error, Write};
 
 const WIDTH: f32 = 960.0;
 const HEIGHT: f32 = 380.0;
-/// Pixels of a metre on the map, whose middle is at (`MIDDLE`, `MIDDLE`).
-const SCALE: f32 = 3.0;
-const MIDDLE: f32 = 190.0;
+/// Pixels of a metre on the map, whose middle is at `MIDDLE`.
+const SCALE: f32 = 2.7;
+const MIDDLE: [f32; 2] = [200.0, 215.0];
 /// The chart, in pixels: left, top, right, bottom; and its ends in m/s.
 const CHART: [f32; 4] = [440.0, 60.0, 940.0, 320.0];
 const FASTEST: f32 = 14.0;
@@ -76,7 +76,8 @@ fn map(svg: &mut String, scene: &Scene, replay: &Replay) -> Result<(), Error> {
 }
 
 fn pixels(x: f32, y: f32) -> [f32; 2] {
-    [MIDDLE + 10.0 + SCALE * x, MIDDLE - SCALE * y]
+    let [left, top] = MIDDLE;
+    [left + SCALE * x, top - SCALE * y]
 }
 
 fn body(

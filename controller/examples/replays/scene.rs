@@ -41,8 +41,8 @@ pub(crate) struct Scene {
     drives: fn(f32) -> f32,
     /// Where a lorry stands that hides the other until it is past it.
     pub(crate) lorry: Option<Pose>,
-    /// Arc length (m) from which the oncoming path is in sight.
-    sight: Option<f32>,
+    /// Arc length (m) from which the oncoming path is in sight at a time (s).
+    sight: Option<fn(f32) -> f32>,
 }
 
 /// All of them.
@@ -71,15 +71,16 @@ pub(crate) const ALL: &[Scene] = &[
     },
     Scene {
         name: "hidden",
-        title: "A lorry that hides an oncoming car",
+        title: "A lorry that hides an oncoming car, and drives off at 14 s",
         start: State { s: 0.0, v: 8.0 },
-        other: Some((ONCOMING, State { s: 8.0, v: 10.0 })),
-        drives: |_| 0.0,
+        other: Some((ONCOMING, State { s: 2.0, v: 0.0 })),
+        drives: |time| if (3.0..8.0).contains(&time) { 2.0 } else { 0.0 },
         lorry: Some(Pose {
             position: Point::new(20.0, -2.0),
             direction: cede_controller::geometry::unit(-1.0, 0.0),
         }),
-        sight: Some(38.0),
+        // It drives off.
+        sight: Some(|time| if time < 14.0 { 38.0 } else { 0.0 }),
     },
 ];
 
@@ -148,7 +149,8 @@ impl Scene {
         let profile = junction.way(EGO).ok_or("no way")?.profile();
         for step in 0..STEPS {
             let (now, time) = (Instant::from_millis(100 * step), 0.1 * step as f32);
-            let seen = other.is_some_and(|(_, at)| self.sight.is_none_or(|from| at.s >= from));
+            let seen =
+                other.is_some_and(|(_, at)| self.sight.is_none_or(|from| at.s >= from(time)));
             let vehicle = other.and_then(|(path, at)| Some((path, on(&junction, path, at)?)));
             let tracks: Vec<Track> = vehicle
                 .filter(|_| seen)
@@ -156,7 +158,7 @@ impl Scene {
                 .into_iter()
                 .collect();
             if let Some(from) = self.sight {
-                let path = ONCOMING;
+                let (path, from) = (ONCOMING, from(time));
                 approach.set_sight(
                     now,
                     &[Sight {

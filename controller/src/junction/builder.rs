@@ -48,6 +48,7 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
                 points: Vec::new(),
                 arc: Vec::new(),
                 conflicts: Vec::new(),
+                limits: Vec::new(),
                 tolerance: TOLERANCE,
                 lateral: f32::INFINITY,
             },
@@ -107,7 +108,6 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
             line: 0.0,
             waits_at_line: false,
             control: Control::Unknown,
-            limits: Vec::new(),
             range: start..end,
         })?;
         Ok(id)
@@ -131,6 +131,10 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
             footprint,
             ..path
         })?;
+        let limits = self.junction.limits.get(of.index()).cloned();
+        if let (Some(its), Some(limits)) = (self.junction.limits.get_mut(id.index()), limits) {
+            *its = limits;
+        }
         Ok(id)
     }
 
@@ -160,7 +164,7 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
     }
 
     /// Says that an ego on `path` drives at `speed` (m/s) or slower from arc length `from` (m) on, until the next limit; nothing
-    /// is said of others. It bounds proposals; plans know nothing of it.
+    /// is said of others, nor of paths that cannot be entered. It bounds proposals; plans know nothing of it.
     ///
     /// # Errors
     /// [`JunctionError::UnknownPath`], [`JunctionError::SpeedLimit`], [`JunctionError::TooManyLimits`].
@@ -180,9 +184,8 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
                 length,
             });
         }
-        if let Some(found) = self.junction.paths.get_mut(path.index()) {
+        if let Some(limits) = self.junction.limits.get_mut(path.index()) {
             let full = JunctionError::TooManyLimits { path };
-            let limits = &mut found.limits;
             limits.push(SpeedLimit { from, speed }).map_err(|_| full)?;
             for i in (1..limits.len()).rev() {
                 if let Some([before, after]) = limits.get_mut(i - 1..=i)
@@ -407,6 +410,7 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
         self.junction.paths.push(path).map_err(|_| full)?;
         // There is room for the first `E`.
         let _ = self.junction.conflicts.push([RouteConflict::NONE; R]);
+        let _ = self.junction.limits.push(Vec::new());
         self.lines.push(None).map_err(|_| full)
     }
 }

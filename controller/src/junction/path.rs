@@ -3,7 +3,6 @@
 use crate::geometry::{Footprint, UnitVector};
 use crate::junction::control::Control;
 use core::ops::Range;
-use heapless::Vec;
 
 /// Largest side of a footprint in metres.
 pub const MAX_FOOTPRINT: f32 = 40.0;
@@ -72,8 +71,6 @@ pub struct Path {
     pub(super) line: f32,
     pub(super) waits_at_line: bool,
     pub(super) control: Control,
-    /// In the order of their places.
-    pub(super) limits: Vec<SpeedLimit, MAX_LIMITS>,
     /// Its points in the pool.
     pub(super) range: Range<usize>,
 }
@@ -107,12 +104,6 @@ impl Path {
     #[must_use]
     pub const fn waits_at_line(&self) -> bool {
         self.waits_at_line
-    }
-
-    /// The speed limits along the path, in order.
-    #[must_use]
-    pub fn limits(&self) -> &[SpeedLimit] {
-        &self.limits
     }
 
     /// What obliges a vehicle to give way where it enters the junction; unknown unless the builder was told.

@@ -3,7 +3,7 @@
 use crate::geometry::Point;
 use crate::junction::builder::JunctionBuilder;
 use crate::junction::conflict::RouteConflict;
-use crate::junction::path::{Path, PathId};
+use crate::junction::path::{MAX_LIMITS, Path, PathId, SpeedLimit};
 use crate::junction::polyline::Polyline;
 use crate::junction::way::Way;
 use heapless::Vec;
@@ -40,6 +40,8 @@ pub struct Junction<const R: usize, const P: usize, const E: usize = R> {
     pub(super) arc: Vec<f32, P>,
     /// How each path that can be entered meets each path.
     pub(super) conflicts: Vec<[RouteConflict; R], E>,
+    /// The speed limits along each path that can be entered, in the order of their places.
+    pub(super) limits: Vec<Vec<SpeedLimit, MAX_LIMITS>, E>,
     pub(super) tolerance: f32,
     /// Lateral acceleration (m/s²) in bends, at most.
     pub(super) lateral: f32,
@@ -94,6 +96,7 @@ impl<const R: usize, const P: usize, const E: usize> Junction<R, P, E> {
             points: &self.points,
             arc: &self.arc,
             conflicts: row.get(..self.paths.len())?,
+            limits: self.limits.get(ego.index())?,
             tolerance: self.tolerance,
             lateral: self.lateral,
         })

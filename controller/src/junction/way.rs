@@ -2,7 +2,7 @@
 
 use crate::geometry::Point;
 use crate::junction::conflict::RouteConflict;
-use crate::junction::path::{Path, PathId};
+use crate::junction::path::{Path, PathId, SpeedLimit};
 use crate::junction::polyline::Polyline;
 use crate::junction::profile::Profile;
 
@@ -15,6 +15,7 @@ pub struct Way<'j> {
     pub(super) arc: &'j [f32],
     /// One for each path.
     pub(super) conflicts: &'j [RouteConflict],
+    pub(super) limits: &'j [SpeedLimit],
     pub(super) tolerance: f32,
     pub(super) lateral: f32,
 }
@@ -62,9 +63,8 @@ impl<'j> Way<'j> {
     /// What bounds the ego's speed along its path, whoever is there.
     #[must_use]
     pub fn profile(self) -> Profile<'j> {
-        let limits = self.path(self.ego).map_or(&[][..], Path::limits);
         let polyline = self.polyline(self.ego).unwrap_or(Polyline::new(&[], &[]));
-        Profile::new(polyline, limits, self.lateral)
+        Profile::new(polyline, self.limits, self.lateral)
     }
 
     /// How far (m) any point of a vehicle's footprint may be from where it is on its route.

@@ -33,7 +33,7 @@ const _: () = assert!(CEDE_MAX_ZONES == cede_controller::junction::zone::MAX_ZON
 const _: () = assert!(CEDE_MAX_LIMITS == cede_controller::junction::MAX_LIMITS);
 
 /// Words of eight bytes of a cede_junction.
-pub const CEDE_JUNCTION_WORDS: usize = 896;
+pub const CEDE_JUNCTION_WORDS: usize = 856;
 
 /// A junction: its paths, and how each two of them meet. Once built it does not change; it stays where it is for as long
 /// as an approach through it is used.

@@ -208,6 +208,10 @@ class Junction:
         """Arc length (m) of the footprint's centre while a vehicle waits at its line."""
     def allowed_speed(self, path: int, s: float) -> float:
         """The speed (m/s) that limits and bends allow an ego there; infinite without them."""
+    def allowed_acceleration(
+        self, path: int, s: float, speed: float, response: float = 0.1
+    ) -> float:
+        """The largest acceleration (m/s²) with which an ego keeps to limits and bends ahead."""
     def vehicle(self, path: int, s: float, speed: float) -> Vehicle:
         """A vehicle on `path` at arc length `s` (m), exactly on it."""
     def project(self, path: int, x: float, y: float) -> float:
