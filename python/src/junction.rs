@@ -16,10 +16,11 @@ const POINTS: usize = 1024;
 /// Stack (bytes) on which a junction is built: the largest is built by value.
 const STACK: usize = 64 << 20;
 
-const CLASSES: [(&str, Class); 3] = [
+const CLASSES: [(&str, Class); 4] = [
     ("car", Class::Car),
     ("lorry", Class::Lorry),
     ("bicycle", Class::Bicycle),
+    ("pedestrian", Class::Pedestrian),
 ];
 
 const CONTROLS: [(&str, Control); 5] = [
@@ -84,6 +85,8 @@ struct Draft {
     control: Control,
     /// From where on (m), and how fast (m/s).
     limits: Vec<(f32, f32)>,
+    /// Of pedestrians, m/s.
+    pace: Option<f32>,
 }
 
 /// Collects what a junction is built from. A call that raises changes nothing.
@@ -109,7 +112,7 @@ impl Builder {
     }
 
     /// Adds a path along `points`, an array of shape (n, 2) or a list of pairs, in metres.
-    #[pyo3(signature = (points, *, kind = "car", length = 5.0, width = 2.0, line = None, control = "unknown", limits = Vec::new()))]
+    #[pyo3(signature = (points, *, kind = "car", length = 5.0, width = 2.0, line = None, control = "unknown", limits = Vec::new(), pace = None))]
     #[allow(clippy::too_many_arguments)]
     fn path(
         &mut self,
@@ -120,6 +123,7 @@ impl Builder {
         line: Option<f32>,
         control: &str,
         limits: Vec<(f32, f32)>,
+        pace: Option<f32>,
     ) -> PyResult<u8> {
         let points = points.as_array();
         if points.ncols() != 2 {
@@ -144,6 +148,7 @@ impl Builder {
             line,
             control,
             limits,
+            pace,
         })
     }
 
@@ -170,6 +175,7 @@ impl Builder {
             control,
             // It has those of the other path.
             limits: Vec::new(),
+            pace: None,
         })
     }
 
@@ -246,6 +252,9 @@ impl Builder {
                 builder.line(id, s)?;
             }
             builder.control(id, draft.control)?;
+            if let Some(pace) = draft.pace {
+                builder.pace(id, pace)?;
+            }
             for &(from, speed) in &draft.limits {
                 builder.speed_limit(id, from, speed)?;
             }

@@ -1,6 +1,6 @@
 //! A replay as a picture: on the left the map, on the right speeds over time.
 
-use crate::scene::{CAR, LORRY, Replay, Scene, Step};
+use crate::scene::{CAR, CROSSING, LORRY, Replay, Scene, Step, WALKER};
 use cede_controller::{Footprint, PathId, Pose};
 use std::fmt::{Error, Write};
 
@@ -69,7 +69,8 @@ fn map(svg: &mut String, scene: &Scene, replay: &Replay) -> Result<(), Error> {
             && let Some(pose) = pose(path, at.s)
         {
             let opacity = if step.seen { opacity } else { 0.15 };
-            body(svg, pose, CAR, OTHER, opacity)?;
+            let size = if path == CROSSING { WALKER } else { CAR };
+            body(svg, pose, size, OTHER, opacity)?;
         }
     }
     Ok(())
@@ -88,7 +89,8 @@ fn body(
     opacity: f32,
 ) -> Result<(), Error> {
     let [x, y] = pixels(pose.position.x, pose.position.y);
-    let (length, width) = (SCALE * size.length, SCALE * size.width);
+    // One on foot would hardly be seen.
+    let (length, width) = (SCALE * size.length.max(1.5), SCALE * size.width.max(1.5));
     let degrees = -pose.direction.y.atan2(pose.direction.x).to_degrees();
     write!(
         svg,

@@ -13,7 +13,7 @@ const POINTS: usize = 24;
 /// Steps of 0.1 s.
 const STEPS: u64 = 260;
 
-pub(crate) type Place = Junction<2, { 2 * POINTS }>;
+pub(crate) type Place = Junction<3, { 3 * POINTS }>;
 
 pub(crate) const CAR: Footprint = Footprint {
     length: 4.6,
@@ -24,8 +24,15 @@ pub(crate) const LORRY: Footprint = Footprint {
     width: 2.5,
 };
 
+/// Somebody on foot.
+pub(crate) const WALKER: Footprint = Footprint {
+    length: 0.6,
+    width: 0.6,
+};
+
 const EGO: PathId = PathId::new(0);
 const ONCOMING: PathId = PathId::new(1);
+pub(crate) const CROSSING: PathId = PathId::new(2);
 
 /// What happens beside the ego.
 pub(crate) struct Scene {
@@ -39,6 +46,8 @@ pub(crate) struct Scene {
     other: Option<(PathId, State)>,
     /// The other's acceleration (m/s²) at a time (s).
     drives: fn(f32) -> f32,
+    /// The arc length (m) of one on foot at a time (s), on the crossing.
+    walks: Option<fn(f32) -> f32>,
     /// Where a lorry stands that hides the other until it is past it.
     pub(crate) lorry: Option<Pose>,
     /// Arc length (m) from which the oncoming path is in sight at a time (s).
@@ -53,6 +62,7 @@ pub(crate) const ALL: &[Scene] = &[
         start: State { s: 0.0, v: 11.0 },
         other: None,
         drives: |_| 0.0,
+        walks: None,
         lorry: None,
         sight: None,
     },
@@ -66,6 +76,22 @@ pub(crate) const ALL: &[Scene] = &[
             3.0..8.0 => -2.0,
             _ => 1.5,
         },
+        walks: None,
+        lorry: None,
+        sight: None,
+    },
+    Scene {
+        name: "pedestrian",
+        title: "A pedestrian who steps onto the crossing, and turns back at 9 s",
+        start: State { s: 0.0, v: 8.0 },
+        other: None,
+        drives: |_| 0.0,
+        walks: Some(|time| match time {
+            ..5.0 => 1.0,
+            5.0..9.0 => 1.0 + 1.4 * (time - 5.0),
+            9.0..13.0 => 6.6 - 1.4 * (time - 9.0),
+            _ => 1.0,
+        }),
         lorry: None,
         sight: None,
     },
@@ -75,6 +101,7 @@ pub(crate) const ALL: &[Scene] = &[
         start: State { s: 0.0, v: 8.0 },
         other: Some((ONCOMING, State { s: 2.0, v: 0.0 })),
         drives: |time| if (3.0..8.0).contains(&time) { 2.0 } else { 0.0 },
+        walks: None,
         lorry: Some(Pose {
             position: Point::new(20.0, -2.0),
             direction: cede_controller::geometry::unit(-1.0, 0.0),
@@ -122,6 +149,9 @@ fn junction() -> Result<Place, Box<dyn Error>> {
     builder.lateral(2.0);
     let left = builder.path(&route(&points)?, Class::Car, CAR)?;
     let oncoming = builder.path(&route(&[(60.0, 2.0), (-60.0, 2.0)])?, Class::Car, CAR)?;
+    let over = route(&[(-6.0, 14.0), (10.0, 14.0)])?;
+    let crossing = builder.path(&over, Class::Pedestrian, WALKER)?;
+    builder.pace(crossing, 2.0)?;
     builder.right_of_way(oncoming, left)?;
     builder.speed_limit(left, 0.0, 13.9)?;
     builder.speed_limit(left, 20.0, 8.0)?;
@@ -149,12 +179,20 @@ impl Scene {
         let profile = junction.way(EGO).ok_or("no way")?.profile();
         for step in 0..STEPS {
             let (now, time) = (Instant::from_millis(100 * step), 0.1 * step as f32);
+            if let Some(walks) = self.walks {
+                let (s, last) = (walks(time), walks(time - 0.1));
+                let v = (s - last).abs() / 0.1;
+                other = Some((CROSSING, State { s, v }));
+            }
             let seen =
                 other.is_some_and(|(_, at)| self.sight.is_none_or(|from| at.s >= from(time)));
             let vehicle = other.and_then(|(path, at)| Some((path, on(&junction, path, at)?)));
             let tracks: Vec<Track> = vehicle
                 .filter(|_| seen)
-                .map(|(path, vehicle)| Track::on(1, path, vehicle))
+                .map(|(path, vehicle)| match path {
+                    CROSSING => Track::on(1, path, vehicle).class(Class::Pedestrian),
+                    _ => Track::on(1, path, vehicle),
+                })
                 .into_iter()
                 .collect();
             if let Some(from) = self.sight {

@@ -6,7 +6,8 @@ use crate::junction::control::Control;
 use crate::junction::error::JunctionError;
 use crate::junction::meeting::within;
 use crate::junction::path::{
-    Class, MAX_FOOTPRINT, MAX_PATH_LENGTH, MAX_SPEED_LIMIT, Path, PathId, SpeedLimit,
+    Class, MAX_FOOTPRINT, MAX_PACE, MAX_PATH_LENGTH, MAX_SPEED_LIMIT, PACE, Path, PathId,
+    SpeedLimit,
 };
 use crate::junction::polyline::Polyline;
 use crate::junction::prepared::Junction;
@@ -108,6 +109,7 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
             line: 0.0,
             waits_at_line: false,
             control: Control::Unknown,
+            pace: PACE,
             range: start..end,
         })?;
         Ok(id)
@@ -194,6 +196,22 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
                     core::mem::swap(before, after);
                 }
             }
+        }
+        Ok(())
+    }
+
+    /// Sets the highest speed (m/s) of pedestrians on `path`, either way: (0, [`MAX_PACE`]], [`PACE`] unless it is set. Of other
+    /// classes it says nothing.
+    ///
+    /// # Errors
+    /// [`JunctionError::UnknownPath`], [`JunctionError::Pace`].
+    pub fn pace(&mut self, path: PathId, pace: f32) -> Result<(), JunctionError> {
+        self.known(path)?;
+        if !(pace > 0.0 && pace <= MAX_PACE) {
+            return Err(JunctionError::Pace { path, value: pace });
+        }
+        if let Some(path) = self.junction.paths.get_mut(path.index()) {
+            path.pace = pace;
         }
         Ok(())
     }

@@ -2,7 +2,9 @@
 
 use crate::junction::builder::MAX_LATERAL;
 use crate::junction::builder::MAX_TOLERANCE;
-use crate::junction::path::{MAX_FOOTPRINT, MAX_LIMITS, MAX_PATH_LENGTH, MAX_SPEED_LIMIT, PathId};
+use crate::junction::path::{
+    MAX_FOOTPRINT, MAX_LIMITS, MAX_PACE, MAX_PATH_LENGTH, MAX_SPEED_LIMIT, PathId,
+};
 use core::fmt::{Display, Formatter, Result};
 
 /// Why a junction cannot be built. Its display says what to do about it.
@@ -97,6 +99,13 @@ pub enum JunctionError {
         /// In m/s².
         value: f32,
     },
+    /// The highest speed of pedestrians is not in (0, [`MAX_PACE`]].
+    Pace {
+        /// The path.
+        path: PathId,
+        /// In m/s.
+        value: f32,
+    },
     /// A path was given the right of way over itself.
     RightOfWay {
         /// The path.
@@ -172,6 +181,10 @@ impl Display for JunctionError {
             Self::Lateral { value } => write!(
                 f,
                 "a lateral acceleration of {value} m/s²: it must be in (0, {MAX_LATERAL}] m/s²"
+            ),
+            Self::Pace { path, value } => write!(
+                f,
+                "{path}: pedestrians of {value} m/s at most: it must be in (0, {MAX_PACE}] m/s"
             ),
             Self::RightOfWay { path } => write!(
                 f,

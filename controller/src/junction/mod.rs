@@ -21,7 +21,8 @@ pub use control::Control;
 pub use error::JunctionError;
 pub use meeting::CONFLICT_RADIUS;
 pub use path::{
-    Class, MAX_FOOTPRINT, MAX_LIMITS, MAX_PATH_LENGTH, MAX_SPEED_LIMIT, Path, PathId, SpeedLimit,
+    Class, MAX_FOOTPRINT, MAX_LIMITS, MAX_PACE, MAX_PATH_LENGTH, MAX_SPEED_LIMIT, PACE, Path,
+    PathId, SpeedLimit,
 };
 pub use polyline::Polyline;
 pub use prepared::Junction;

@@ -3,7 +3,7 @@
 use crate::geometry::Point;
 use crate::junction::builder::JunctionBuilder;
 use crate::junction::conflict::RouteConflict;
-use crate::junction::path::{MAX_LIMITS, Path, PathId, SpeedLimit};
+use crate::junction::path::{Class, MAX_LIMITS, Path, PathId, SpeedLimit};
 use crate::junction::polyline::Polyline;
 use crate::junction::way::Way;
 use heapless::Vec;
@@ -84,11 +84,12 @@ impl<const R: usize, const P: usize, const E: usize> Junction<R, P, E> {
         self.way(ego)?.conflict(other)
     }
 
-    /// The junction as the vehicles of path `ego` see it; `None` if `ego` is not among the first `E` or
-    /// does not exist.
+    /// The junction as the vehicles of path `ego` see it; `None` if `ego` is not among the first `E`, does not exist, or
+    /// is for pedestrians.
     #[must_use]
     pub fn way(&self, ego: PathId) -> Option<Way<'_>> {
-        self.path(ego)?;
+        self.path(ego)
+            .filter(|path| path.class() != Class::Pedestrian)?;
         let row = self.conflicts.get(ego.index())?;
         Some(Way {
             ego,

@@ -5,7 +5,7 @@ use crate::fault::{Fault, Field, InputFault, Subject};
 use crate::geometry::{Point, Pose, distance};
 use crate::headroom::Room;
 use crate::junction::zone::INFLATION;
-use crate::junction::{PathId, Polyline, Route, Way};
+use crate::junction::{Class, PathId, Polyline, Route, Way};
 use crate::observation::{Candidate, Track, Vehicle};
 
 /// A direction whose cosine to its path is below this points elsewhere: 60°.
@@ -84,6 +84,7 @@ fn vehicle_on(
         }
     };
     let check = |field, value, range| keep(Room::between(value, range), field, value, range);
+    let walks = (way.path(path)).is_some_and(|path| path.class() == Class::Pedestrian);
     let Some(line) = way.polyline(path) else {
         return Err(refused(
             subject,
@@ -113,7 +114,12 @@ fn vehicle_on(
     let offset = keep(offset, Field::Offset, away, [0.0, spare])?;
     let cosine = aligned(line, vehicle, spare) / norm;
     let heading = Room::cosine(ALIGNED, cosine);
-    let heading = keep(heading, Field::Heading, cosine, [ALIGNED, 2.0])?;
+    let heading = if walks {
+        // It may turn back.
+        Room::cosine(ALIGNED, 1.0)
+    } else {
+        keep(heading, Field::Heading, cosine, [ALIGNED, 2.0])?
+    };
     if vehicle.speed < 0.0 {
         vehicle.speed = 0.0;
     }

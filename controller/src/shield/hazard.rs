@@ -8,13 +8,14 @@ use super::reach::Reach;
 use super::rules::Rules;
 use super::tracks::{News, Other, Tracks};
 use super::unwatched::Closed;
+use super::walkers::MAX_WALKERS;
 use crate::junction::zone::{FAR, MAX_ZONES, Zone};
 use crate::junction::{MAX_OTHERS, PathId, RightOfWay, RouteConflict, Way};
 use crate::real::Real;
 use heapless::Vec;
 
-/// Every zone of every other and of everybody out of sight, and what is closed.
-const CAPACITY: usize = (MAX_OTHERS + MAX_SIGHTS) * MAX_ZONES + 1;
+/// Every zone of every other, of everybody out of sight and of every pedestrian, and what is closed.
+const CAPACITY: usize = (MAX_OTHERS + MAX_SIGHTS + MAX_WALKERS) * MAX_ZONES + 1;
 
 /// An ego that comes to rest no farther beyond its line than this (m) waits at it.
 const BEYOND: f32 = 1.0;
@@ -79,6 +80,13 @@ pub(crate) enum Passage {
         /// the lane.
         arrives: f32,
     },
+    /// Before a pedestrian comes to its zone, from whichever side.
+    Walks {
+        /// Metres, at least, from the pedestrian to its zone; negative if it may be in it.
+        distance: f32,
+        /// The pedestrian's speed, at most, in m/s.
+        speed: f32,
+    },
     /// Not as long as the other is where it is: the ego is behind it in one lane.
     Never,
 }
@@ -98,7 +106,7 @@ impl Hazards {
     /// Adds the hazards of everybody who matters, but for those that the rule of precedence takes away. In place,
     /// because they are the largest thing on the stack.
     ///
-    /// Cost: O(zones²) for the sorting, at most 49².
+    /// Cost: O(zones²) for the sorting, at most 61².
     pub(crate) fn add<const N: usize, R: Rules>(
         &mut self,
         contract: &Contract,
@@ -116,6 +124,9 @@ impl Hazards {
         for other in tracks.hidden.others::<R>(contract, way, ego) {
             let who = Who::Hidden(other.path);
             self.add_other::<R>((contract, way), (ego, &other), who, &mut open);
+        }
+        for hazard in tracks.walkers.hazards(contract, way, ego) {
+            self.insert::<R>(hazard);
         }
         if open[0] >= 0.0 {
             self.keep_clear(open);
@@ -198,7 +209,7 @@ impl Hazards {
     }
 
     fn insert<R: Rules>(&mut self, hazard: Hazard) {
-        // 8 others and 8 edges of sight of 3 zones each, and what is closed: `Shield` and `MAX_ZONES` see to it that there are no more.
+        // 8 others, 8 edges of sight and 4 pedestrians of 3 zones each, and what is closed: `Shield` and `MAX_ZONES` see to it that there are no more.
         let _ = self.sorted.push(hazard);
         for i in (1..self.sorted.len()).rev() {
             if let Some([before, after]) = self.sorted.get_mut(i - 1..=i)
@@ -388,7 +399,7 @@ pub(super) fn granted(
     let settled = match passage {
         Passage::Before { .. } => true,
         Passage::Ahead { .. } => ego.least >= arrival(way, rule, way.ego()),
-        Passage::Never => false,
+        Passage::Walks { .. } | Passage::Never => false,
     };
     let farthest = Reach {
         distance: other.bounds.s.to,

@@ -26,6 +26,7 @@ pub(crate) mod tracks;
 mod unwatched;
 mod verified;
 pub(crate) mod waiting;
+mod walkers;
 
 pub use bounds::Bounds;
 pub use contract::{Contract, ContractBuilder, ContractError, Ego, Follower, Other, Precedence};
@@ -38,8 +39,9 @@ use crate::fault::Fault;
 use crate::headroom::{Headroom, Room};
 use crate::instant::Instant;
 use crate::junction::zone::FAR;
-use crate::junction::{Junction, MAX_OTHERS, PathId, RightOfWay, Way};
+use crate::junction::{Class, Junction, MAX_OTHERS, PathId, RightOfWay, Way};
 use crate::observation::{Observation, Sight, Vehicle};
+use crate::real::Real;
 use actuation::Inherited;
 use choice::{allowed, most, nearest};
 use clock::{Clock, Tick};
@@ -737,7 +739,7 @@ fn hidden_reason(contract: &Contract, path: PathId, passage: Passage, clears: f3
     let (distance, speed) = match passage {
         Passage::Before { distance, speed } => (distance, speed),
         Passage::Ahead { gap, speed, .. } => (gap, speed),
-        Passage::Never => (0.0, 0.0),
+        Passage::Walks { .. } | Passage::Never => (0.0, 0.0),
     };
     Reason::Hidden {
         path: u8::try_from(path.index()).unwrap_or(u8::MAX),
@@ -780,7 +782,11 @@ fn right(way: Way<'_>, path: PathId) -> Option<Right> {
 /// Whether in every lane that the ego shares, sensed positions tell who is ahead.
 fn tells_apart(contract: &Contract, way: Way<'_>) -> Result<(), EnterError> {
     let length = |path| way.path(path).map_or(0.0, |path| path.footprint().length);
-    for (path, conflict) in way.conflicts().take(way.paths()) {
+    let driven = |&(path, _): &(PathId, _)| {
+        let path = way.path(path);
+        path.is_some_and(|path| path.class() != Class::Pedestrian)
+    };
+    for (path, conflict) in way.conflicts().filter(driven) {
         let touching = length(way.ego()) + length(path);
         for zone in conflict.zones().filter(|zone| zone.is_lane()) {
             let band = zone.lead.to - zone.lead.from;
@@ -822,7 +828,7 @@ impl Scene<'_> {
         let departure = R::departure(contract, self.ego.speed, self.inherited, go);
         let rest = R::rest(contract, departure.braking, 0.0);
         let outside = |passage| match passage {
-            Passage::Before { distance, .. } => distance > 0.0,
+            Passage::Before { distance, .. } | Passage::Walks { distance, .. } => distance > 0.0,
             // It comes from behind.
             Passage::Ahead { gap, .. } => gap > 0.0,
             Passage::Never => false,
@@ -881,6 +887,11 @@ impl Scene<'_> {
                         needs: R::safe_gap(contract, rush.speed, ego_speed),
                     }
                 }
+                Passage::Walks { distance, speed } => Reason::Arrival {
+                    other,
+                    arrives: Real::max(distance, 0.0) / speed,
+                    clears,
+                },
                 Passage::Never => stop,
             };
         }

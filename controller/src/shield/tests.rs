@@ -14,6 +14,7 @@ mod edges;
 mod headroom;
 mod hidden;
 mod memory;
+mod walkers;
 
 const WORST: Contract = Contract::WORST_CASE;
 

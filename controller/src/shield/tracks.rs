@@ -8,13 +8,14 @@ use super::hidden::Hidden;
 use super::own::Own;
 use super::precedence::{PairMemory, ZoneSet, has};
 use super::rules::Rules;
-use super::unwatched::{Closed, Entry, Place, Unwatched, take, unplaced};
+use super::unwatched::{Closed, Entry, Place, Unwatched, sooner, take, unplaced};
 use super::waiting::{RestState, Sighting};
+use super::walkers::Walkers;
 use crate::fault::Fault;
 use crate::headroom::{Headroom, Room};
 use crate::instant::Instant;
 use crate::junction::zone::{FAR, MAX_ZONES, Span, Zone};
-use crate::junction::{PathId, Way};
+use crate::junction::{Class, PathId, Way};
 use crate::observation::{Candidate, Observation, Track, Vehicle};
 use heapless::Vec;
 
@@ -76,7 +77,7 @@ pub(crate) struct Findings {
 
 impl Findings {
     /// Track `number` moved to where so much is left of its place and speed.
-    fn moved(&mut self, number: u16, rooms: [Room; 2]) {
+    pub(super) fn moved(&mut self, number: u16, rooms: [Room; 2]) {
         self.headroom.note_track(number, rooms);
         if !Room::hold(rooms) {
             self.breach = self.breach.or(Some(number));
@@ -90,6 +91,7 @@ pub(crate) struct Tracks<const N: usize> {
     watched: Vec<Other, N>,
     unwatched: Unwatched,
     pub(crate) hidden: Hidden,
+    pub(super) walkers: Walkers,
 }
 
 impl<const N: usize> Tracks<N> {
@@ -98,6 +100,7 @@ impl<const N: usize> Tracks<N> {
             watched: Vec::new(),
             unwatched: Unwatched::new(),
             hidden: Hidden::new(),
+            walkers: Walkers::new(),
         }
     }
 
@@ -114,11 +117,13 @@ impl<const N: usize> Tracks<N> {
     pub(crate) fn forget(&mut self, number: u16) {
         self.watched.retain(|other| other.number != number);
         self.unwatched.retain(|entry| entry.number != number);
+        self.walkers.forget(number);
     }
 
     /// Until `now` everybody kept to `contract`, from now on to another one.
     pub(crate) fn rebase<R: Rules>(&mut self, contract: &Contract, now: Instant) {
         self.hidden.rebase::<R>(contract);
+        self.walkers.rebase();
         for other in &mut self.watched {
             (other.base, other.at) = (other.bounds, now);
         }
@@ -141,6 +146,7 @@ impl<const N: usize> Tracks<N> {
     /// Where everybody may be at `now`, if nothing is seen.
     pub(crate) fn coast<R: Rules>(&mut self, contract: &Contract, now: Instant) {
         self.hidden.advance(now);
+        self.walkers.advance(now);
         for other in &mut self.watched {
             other.seen = false;
             let least = other.bounds.s.from;
@@ -171,16 +177,21 @@ impl<const N: usize> Tracks<N> {
         self.coast::<R>(contract, now);
         // Who is known comes first, so that a newcomer finds as much room as there is.
         for newcomers in [false, true] {
-            for track in seen.tracks {
+            for track in seen.tracks.iter().filter(|track| drives(track)) {
                 self.note_track::<R>((contract, way), (now, ego), track, newcomers, &mut findings);
             }
+        }
+        for track in seen.tracks.iter().filter(|track| !drives(track)) {
+            (self.walkers).note((contract, way), ego, track, &mut findings);
         }
         for other in &mut self.watched {
             let ahead = other.entry::<R>(way, ego.least, 0.0);
             other.gone |= ahead.is_none();
         }
         self.hidden.look::<R>(contract);
-        findings.closed = self.unwatched.end(way, ego.least);
+        if let Some(closed) = self.unwatched.end(way, ego.least) {
+            findings.closed = sooner(findings.closed, closed);
+        }
         findings
     }
 
@@ -399,6 +410,11 @@ impl<const N: usize> Tracks<N> {
             .iter_mut()
             .for_each(|entry| entry.holds = true);
     }
+}
+
+/// Whether it keeps to one direction.
+fn drives(track: &Track) -> bool {
+    track.class != Class::Pedestrian
 }
 
 /// The hazards of somebody who is seen and not watched.

@@ -31,7 +31,7 @@
 /**
  * Words of eight bytes of a cede_approach.
  */
-#define CEDE_APPROACH_WORDS 368
+#define CEDE_APPROACH_WORDS 392
 
 /**
  * Most paths of which a part is out of sight, in one approach.
@@ -117,6 +117,11 @@
  * A bicycle or a motorcycle.
  */
 #define CEDE_CLASS_BICYCLE 2
+
+/**
+ * Somebody on foot on a crossing, who may turn back at any time.
+ */
+#define CEDE_CLASS_PEDESTRIAN 3
 
 /**
  * Words of eight bytes of a cede_policy.
@@ -290,6 +295,10 @@ enum cede_status
      * The lateral acceleration is not in (0, 20] m/s^2.
      */
     CEDE_STATUS_JUNCTION_LATERAL = 65,
+    /**
+     * The highest speed of pedestrians is not in (0, 10] m/s.
+     */
+    CEDE_STATUS_JUNCTION_PACE = 66,
     /**
      * The junction has no such path to enter by.
      */
@@ -1819,6 +1828,15 @@ cede_status cede_junction_set_control(struct cede_junction *junction,
                                       uint8_t path,
                                       uint8_t control,
                                       struct cede_detail *detail);
+
+/**
+ * Sets the highest speed (m/s) of pedestrians on a path, either way, in (0, 10]; 3 unless it is set. Of other classes it says
+ * nothing.
+ */
+cede_status cede_junction_set_pace(struct cede_junction *junction,
+                                   uint8_t path,
+                                   float pace,
+                                   struct cede_detail *detail);
 
 /**
  * Builds the junction: works out how each two paths meet. Nothing can be added afterwards. A junction that is refused can

@@ -16,7 +16,7 @@ use cede_controller::{
 };
 
 /// Words of eight bytes of a cede_approach.
-pub const CEDE_APPROACH_WORDS: usize = 368;
+pub const CEDE_APPROACH_WORDS: usize = 392;
 
 /// Most paths of which a part is out of sight, in one approach.
 pub const CEDE_MAX_SIGHTS: usize = 8;

@@ -4,8 +4,8 @@ use crate::detail::{cede_detail, told};
 use crate::memory::{Plain, checked, read, slice, write};
 use crate::object::{Storage, change, lend, make};
 use crate::observation::{
-    CEDE_CLASS_BICYCLE, CEDE_CLASS_CAR, CEDE_CLASS_LORRY, cede_point, cede_pose, class,
-    class_number, point, pose,
+    CEDE_CLASS_BICYCLE, CEDE_CLASS_CAR, CEDE_CLASS_LORRY, CEDE_CLASS_PEDESTRIAN, cede_point,
+    cede_pose, class, class_number, point, pose,
 };
 use crate::status::cede_status;
 use cede_controller::{
@@ -417,6 +417,20 @@ pub unsafe extern "C" fn cede_junction_set_control(
     unsafe { told(result.and_then(set), detail) }
 }
 
+/// Sets the highest speed (m/s) of pedestrians on a path, either way, in (0, 10]; 3 unless it is set. Of other classes it says
+/// nothing.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cede_junction_set_pace(
+    junction: *mut cede_junction,
+    path: u8,
+    pace: f32,
+    detail: *mut cede_detail,
+) -> cede_status {
+    let set = |builder: &mut Builder| builder.pace(PathId::new(path), pace);
+    // SAFETY: the header's contract of pointers.
+    unsafe { told(build_up(junction, set), detail) }
+}
+
 /// Builds the junction: works out how each two paths meet. Nothing can be added afterwards. A junction that is refused can
 /// be mended and built again.
 #[unsafe(no_mangle)]
@@ -755,6 +769,15 @@ impl From<JunctionError> for cede_detail {
                 let capacity = CEDE_MAX_LIMITS as f32;
                 about(cede_status::JunctionTooManyLimits, path, 0.0, capacity)
             }
+            Error::Pace { path, value } => Self {
+                excludes_low: 1,
+                ..about(
+                    cede_status::JunctionPace,
+                    path,
+                    value,
+                    cede_controller::junction::MAX_PACE,
+                )
+            },
             Error::Lateral { value } => Self {
                 value,
                 high: cede_controller::junction::MAX_LATERAL,
@@ -798,4 +821,5 @@ pub(crate) const CLASS: &[(u8, &CStr)] = &[
     (CEDE_CLASS_CAR, c"car"),
     (CEDE_CLASS_LORRY, c"lorry"),
     (CEDE_CLASS_BICYCLE, c"bicycle"),
+    (CEDE_CLASS_PEDESTRIAN, c"pedestrian"),
 ];

@@ -86,6 +86,8 @@ pub enum cede_status {
     JunctionTooManyLimits = 64,
     /// The lateral acceleration is not in (0, 20] m/s^2.
     JunctionLateral = 65,
+    /// The highest speed of pedestrians is not in (0, 10] m/s.
+    JunctionPace = 66,
 
     /// The junction has no such path to enter by.
     EnterPath = 70,
@@ -247,6 +249,10 @@ pub(crate) const STATUS: &[(i32, &CStr)] = &[
     (
         cede_status::JunctionLateral as i32,
         c"the lateral acceleration is out of its range",
+    ),
+    (
+        cede_status::JunctionPace as i32,
+        c"the highest speed of pedestrians is out of its range",
     ),
     (
         cede_status::EnterPath as i32,

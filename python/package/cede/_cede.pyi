@@ -137,7 +137,7 @@ class Track:
         path: int,
         vehicle: Vehicle,
         *,
-        kind: Literal["car", "lorry", "bicycle"] = "car",
+        kind: Literal["car", "lorry", "bicycle", "pedestrian"] = "car",
         or_on: Sequence[tuple[int, float]] = ...,
     ) -> Track: ...
     @property
@@ -157,22 +157,24 @@ class JunctionBuilder:
         self,
         points: ArrayLike,
         *,
-        kind: Literal["car", "lorry", "bicycle"] = "car",
+        kind: Literal["car", "lorry", "bicycle", "pedestrian"] = "car",
         length: float = 5.0,
         width: float = 2.0,
         line: float | None = None,
         control: Literal["unknown", "free", "yield", "stop", "all-way-stop"] = "unknown",
         limits: Sequence[tuple[float, float]] = ...,
+        pace: float | None = None,
     ) -> int:
         """Add a path along `points`, shape (n, 2), in metres; its number is returned.
 
         `line` (m) is where a vehicle waits: it passes it only with a plan through the junction.
         `limits` are speed limits of the ego: from where on (m), and how fast (m/s).
+        `pace` (m/s) is the most speed of pedestrians on it, who may turn back.
         """
     def variant(
         self,
         of: int,
-        kind: Literal["car", "lorry", "bicycle"],
+        kind: Literal["car", "lorry", "bicycle", "pedestrian"],
         length: float,
         width: float,
         line: float | None = None,
