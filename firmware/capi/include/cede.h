@@ -1950,6 +1950,11 @@ const char *cede_field_text(uint8_t field);
 const char *cede_breach_text(uint8_t breach);
 
 /**
+ * What a cede_condition says.
+ */
+const char *cede_condition_text(uint8_t condition);
+
+/**
  * The name of a cede_contract_field, as in "ego.braking".
  */
 const char *cede_contract_field_text(uint8_t field);

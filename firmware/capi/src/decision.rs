@@ -654,6 +654,33 @@ pub(crate) const FIELD: &[(u8, &CStr)] = &[
     (cede_field::Other as u8, c"other"),
 ];
 
+pub(crate) const CONDITION: &[(u8, &CStr)] = &[
+    (cede_condition::None as u8, c"none"),
+    (
+        cede_condition::EgoPosition as u8,
+        c"the ego's arc length (m)",
+    ),
+    (cede_condition::EgoSpeed as u8, c"the ego's speed (m/s)"),
+    (
+        cede_condition::OtherPosition as u8,
+        c"a track's arc length (m)",
+    ),
+    (cede_condition::OtherSpeed as u8, c"a track's speed (m/s)"),
+    (
+        cede_condition::Offset as u8,
+        c"distance (m) of a pose from its place on the path",
+    ),
+    (
+        cede_condition::Heading as u8,
+        c"cosine of the angle to the path",
+    ),
+    (
+        cede_condition::Period as u8,
+        c"time (s) since the last call",
+    ),
+    (cede_condition::Other as u8, c"other"),
+];
+
 pub(crate) const BREACH: &[(u8, &CStr)] = &[
     (cede_breach::None as u8, c"none"),
     (cede_breach::Ego as u8, c"the ego deviated from the command"),
