@@ -349,8 +349,8 @@ class Decision:
     def headroom(self) -> dict[str, Room]:
         """How near each monitored condition of the contract is to its limit.
 
-        `ego-position` (m), `ego-speed` (m/s), `other-position` (m), `other-speed` (m/s), `offset` (m),
-        `heading` (a cosine), `period` (s); those that there was something to compare for.
+        `ego-position` (m), `ego-speed` (m/s), `other-position` (m), `other-speed` (m/s),
+        `offset` (m), `heading` (a cosine), `period` (s); those that were compared.
         """
     @property
     def prediction(self) -> Prediction | None:
