@@ -3,14 +3,17 @@
 use crate::decision::{Decision, Prediction};
 use crate::fault::Fault;
 use crate::instant::Instant;
-use crate::junction::{ConflictKind, Junction, MAX_OTHERS, Path, PathId, RouteConflict, Way};
-use crate::observation::{Observation, Track, Vehicle};
+use crate::junction::{
+    Class, ConflictKind, Junction, MAX_OTHERS, Path, PathId, RouteConflict, Way,
+};
+use crate::observation::{Observation, Sight, Track, Vehicle};
 use crate::policy::Policy;
 use crate::policy::features::arrival;
 use crate::policy::pair::{Pair, Part, VehicleState};
 use crate::policy::svo;
 use crate::policy::traffic::{NearbyVehicle, TrafficContext};
-use crate::shield::{Contract, EnterError, NotReady, Plan, Shield, door};
+use crate::shield::door::{self, Admitted};
+use crate::shield::{Contract, EnterError, NotReady, Plan, Shield, SightError};
 use heapless::Vec;
 
 /// Acceleration (m/s²) that is proposed when there is nobody left to meet.
@@ -139,6 +142,14 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
         self.around = around;
     }
 
+    /// See [`Shield::set_sight`].
+    ///
+    /// # Errors
+    /// See [`SightError`]; nothing is changed then.
+    pub fn set_sight(&mut self, now: Instant, sights: &[Sight]) -> Result<(), SightError> {
+        self.shield.set_sight(now, sights)
+    }
+
     /// See [`Shield::forget`].
     pub fn forget(&mut self, number: u16) {
         self.shield.forget(number);
@@ -156,8 +167,9 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
     ///
     /// The policy is asked about one of those whom the ego has yet to meet: of those who do not wait for it, the one that
     /// arrives first at the conflict point. Its proposal passes to the shield, which considers everybody. With nobody left
-    /// to meet, the ego accelerates gently up to the contract's speed. For those over whom it has precedence it does not
-    /// brake, and sets off. See [`Shield::filter`].
+    /// to meet, the ego accelerates gently up to the contract's speed. Nothing is proposed that exceeds the speed limits of
+    /// its path, or the junction's lateral acceleration in bends ([`crate::Profile`]). For those over whom it has
+    /// precedence it does not brake, and sets off. See [`Shield::filter`].
     ///
     /// Cost: one pass through the network, and the shield's. The
     /// acceleration is finite and within the contract's, whatever the bits of the observation.
@@ -204,7 +216,7 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
         let mut proposed = 0.0;
         if self.shield.is_new(now) {
             // The shield finds a fault again and carries on with its plan.
-            if let Ok(asked) = self.ask(observation, wanted.first) {
+            if let Ok((asked, limit)) = self.ask(observation, wanted.first) {
                 self.prediction = asked.map(|(_, prediction)| prediction);
                 proposed = match asked {
                     None => wanted.free,
@@ -216,6 +228,9 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
                     }
                     Some(_) => wanted.most,
                 };
+                if limit < proposed {
+                    proposed = limit;
+                }
             } else {
                 self.prediction = None;
             }
@@ -239,23 +254,25 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
     ///
     /// Cost: one pass through the network. Finite and within ± 3.
     pub fn proposal(&mut self, observation: &Observation<'_>) -> f32 {
-        self.ask(observation, f32::MIN).map_or(0.0, |asked| {
+        self.ask(observation, f32::MIN).map_or(0.0, |(asked, _)| {
             asked.map_or(FREE, |(acceleration, _)| acceleration)
         })
     }
 
     /// What the policy proposes, and at least `first` (m/s²) for those over whom the ego has precedence; nothing, if nobody
-    /// is left to meet. Not inlined, because its stack is free again when the shield needs its own.
+    /// is left to meet. And what the path's profile allows (m/s²). Not inlined, because its stack is free again when the shield needs its own.
     #[inline(never)]
     fn ask(
         &mut self,
         observation: &Observation<'_>,
         first: f32,
-    ) -> Result<Option<(f32, Prediction)>, Fault> {
+    ) -> Result<(Option<(f32, Prediction)>, f32), Fault> {
         let (way, contract) = (self.shield.way(), self.shield.contract());
-        let ego = door::ego(way, contract, &observation.ego)?;
+        let ego = door::ego(way, contract, &observation.ego)?.vehicle;
         let nearby = nearby::<N>(way, contract, &ego, observation.tracks);
-        Ok(self.propose(way, &ego, &nearby, first))
+        let (profile, response) = (way.profile(), contract.response());
+        let limit = profile.acceleration(ego.s, ego.speed, response);
+        Ok((self.propose(way, &ego, &nearby, first), limit))
     }
 
     fn propose(
@@ -375,15 +392,18 @@ fn nearby<'j, const N: usize>(
     tracks: &[Track],
 ) -> Vec<Nearby<'j>, N> {
     let mut nearest: Vec<Nearby<'j>, N> = Vec::new();
-    let candidates = tracks
+    // Of pedestrians the policy knows nothing.
+    let driven = tracks
         .iter()
-        .flat_map(|track| track.candidates().map(move |candidate| (track, candidate)));
+        .filter(|track| track.class != Class::Pedestrian);
+    let candidates =
+        driven.flat_map(|track| track.candidates().map(move |candidate| (track, candidate)));
     for (track, candidate) in candidates {
         let there = way.path(candidate.path).zip(way.conflict(candidate.path));
         let Some((path, conflict)) = there else {
             continue;
         };
-        let Ok(vehicle) = door::track(way, contract, track, candidate) else {
+        let Ok(Admitted { vehicle, .. }) = door::track(way, contract, track, candidate) else {
             continue;
         };
         let ahead = |zone: &crate::Zone| ego.s < zone.ego.to && vehicle.s < zone.other.to;
@@ -443,7 +463,7 @@ mod tests {
     use super::*;
     use crate::decision::Cause;
     use crate::geometry::{Footprint, Point};
-    use crate::junction::{Class, Route};
+    use crate::junction::Route;
     use crate::policy::features::FeatureSet;
     use crate::policy::weights::Perspective;
     use crate::policy::weights::testing::file;
@@ -503,7 +523,7 @@ mod tests {
                 ego: on(&site, 0, 0.0, 5.0),
                 tracks: &tracks,
             };
-            approach.ask(&seen, FREE).unwrap().unwrap()
+            approach.ask(&seen, FREE).unwrap().0.unwrap()
         };
         let (a, c) = ((1, 5.0, 4.0), (3, 20.0, 9.0));
         // 55 m at 4 m/s, and 40 m at 9 m/s.
@@ -538,7 +558,7 @@ mod tests {
                 ego: on(&site, 0, line - short, speed),
                 tracks: &tracks,
             };
-            let wanted = approach.ask(&seen, most).unwrap().unwrap().0;
+            let wanted = approach.ask(&seen, most).unwrap().0.unwrap().0;
             let decision = approach.decide_up_to(Instant::from_millis(at), &seen, most);
             (wanted, decision.acceleration)
         };
@@ -604,8 +624,38 @@ mod tests {
     }
 
     #[test]
+    fn no_proposal_exceeds_the_profile() {
+        let file = file(FeatureSet::Route, Perspective::Ego, 16);
+        let mut builder = Site::builder();
+        let east = route(&[(-60.0, 0.0), (120.0, 0.0)]);
+        let path = builder.path(&east, Class::Car, Footprint::PAPER).unwrap();
+        builder.speed_limit(path, 30.0, 6.0).unwrap();
+        let site = builder.build().unwrap();
+        let at = |s, most: Option<f32>| {
+            let mut approach = drive(&file).enter(&site, path).unwrap();
+            let seen = Observation {
+                ego: on(&site, 0, s, 10.0),
+                tracks: &[],
+            };
+            let now = Instant::from_millis(0);
+            let decision = match most {
+                Some(most) => approach.decide_up_to(now, &seen, most),
+                None => approach.decide(now, &seen),
+            };
+            assert_eq!(decision.cause, Cause::Policy);
+            decision.acceleration
+        };
+        // 64 m²/s² at 1.5 m/s² are 21.3 m.
+        assert_eq!((at(0.0, None), at(0.0, Some(0.5))), (FREE, 0.5));
+        for most in [None, Some(2.0)] {
+            assert!((at(9.0, most) + 1.5).abs() < 0.2, "{}", at(9.0, most));
+        }
+        assert_eq!(at(9.0, Some(-2.5)), -2.5);
+    }
+
+    #[test]
     fn an_approach_fits_its_share_of_the_memory() {
         let size = size_of::<Approach<'_, '_>>();
-        assert!(size <= 2560, "{size}");
+        assert!(size <= 3072, "{size}");
     }
 }

@@ -1,6 +1,7 @@
 //! What the controller decides, and why.
 
 use crate::fault::Fault;
+use crate::headroom::Headroom;
 use crate::shield::{Contract, Plan};
 use core::fmt;
 
@@ -30,6 +31,9 @@ pub struct Decision {
     pub unwatched: Option<u16>,
     /// What the policy thinks of the other that restricts the ego most, if it was asked.
     pub prediction: Option<Prediction>,
+    /// How near each monitored condition of the contract is to its limit.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub headroom: Headroom,
 }
 
 /// What the policy thinks of one other.
@@ -120,6 +124,15 @@ pub enum Reason {
         /// Metres that it needs.
         needs: f32,
     },
+    /// The ego could not clear the zone before somebody arrives who may be out of sight.
+    Hidden {
+        /// Number of the path on which that is.
+        path: u8,
+        /// Their earliest arrival, s from now.
+        arrives: f32,
+        /// When the ego would have cleared the zone, s from now.
+        clears: f32,
+    },
 }
 
 /// Whose motion since the last decision exceeds the contract's bounds.
@@ -146,6 +159,7 @@ impl Decision {
             fault: None,
             unwatched: None,
             prediction: None,
+            headroom: Headroom::NONE,
         }
     }
 }
@@ -183,9 +197,14 @@ impl fmt::Display for Cause {
 
 impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (Self::Arrival { other, .. } | Self::Entry { other, .. } | Self::Stop { other, .. }) =
-            self;
-        self.tell(f, format_args!("other {other}"))
+        match self {
+            Self::Arrival { other, .. } | Self::Entry { other, .. } | Self::Stop { other, .. } => {
+                self.tell(f, format_args!("other {other}"))
+            }
+            Self::Hidden { path, .. } => {
+                self.tell(f, format_args!("somebody out of sight on path {path}"))
+            }
+        }
     }
 }
 
@@ -199,11 +218,15 @@ impl Reason {
         match *self {
             Self::Arrival {
                 arrives, clears, ..
+            }
+            | Self::Hidden {
+                arrives, clears, ..
             } if arrives > 0.0 => write!(
                 f,
                 "{who} may arrive in {arrives:.1} s, clearing needs {clears:.1} s"
             ),
             Self::Arrival { .. } => write!(f, "{who} is in its zone"),
+            Self::Hidden { .. } => write!(f, "{who} may be in its zone"),
             Self::Entry { gap, needs, .. } => write!(
                 f,
                 "{who} may be as near as {gap:.1} m, entering needs {needs:.1} m"

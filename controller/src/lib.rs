@@ -91,6 +91,7 @@ pub mod dangerous;
 mod decision;
 mod fault;
 pub mod geometry;
+mod headroom;
 mod instant;
 pub mod junction;
 pub mod kinematics;
@@ -104,13 +105,14 @@ pub use approach::{Approach, Drive, FREE, GENTLE};
 pub use decision::{Action, Breach, Cause, Decision, Intervention, Prediction, Reason};
 pub use fault::{Fault, Field, InputFault, Subject};
 pub use geometry::{Footprint, Point, Pose, UnitVector, Vector};
+pub use headroom::{Condition, Headroom, Room};
 pub use instant::Instant;
 pub use junction::{
     CONFLICT_RADIUS, Class, ConflictKind, Control, Junction, JunctionBuilder, JunctionError,
-    MAX_OTHERS, Path, PathId, Polyline, Priority, RightOfWay, Route, RouteConflict, RouteError,
-    Span, Way, Zone,
+    MAX_OTHERS, Path, PathId, Polyline, Priority, Profile, RightOfWay, Route, RouteConflict,
+    RouteError, Span, SpeedLimit, Way, Zone,
 };
-pub use observation::{Candidate, MAX_CANDIDATES, Observation, Track, Vehicle};
+pub use observation::{Candidate, MAX_CANDIDATES, Observation, Sight, Track, Vehicle};
 pub use policy::{
     Crosser, FeatureSet, Leader, Mlp, NearbyVehicle, Pair, Part, Perspective, Policy,
     TrafficContext, VehicleState, Weights, WeightsError,
@@ -118,6 +120,6 @@ pub use policy::{
 pub use real::{Elementary, Real};
 pub use separation::OrientedBox;
 pub use shield::{
-    Bounds, Contract, ContractBuilder, ContractError, Ego, EnterError, Follower, NotReady, Other,
-    Plan, Precedence, Shield,
+    Bounds, Contract, ContractBuilder, ContractError, Ego, EnterError, Follower, MAX_SIGHTS,
+    NotReady, Other, Plan, Precedence, Shield, SightError,
 };

@@ -101,6 +101,18 @@ impl Track {
     }
 }
 
+/// How much of a path the sensors see at one moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sight {
+    /// The path.
+    pub path: PathId,
+    /// Arc length (m) from which they see it, in [0, length]: whoever has its centre there or beyond, towards the path's end, is
+    /// certainly among the tracks. Before it somebody may be.
+    pub from: f32,
+    /// Nobody out of sight is faster than this (m/s), in (0, [`Vehicle::MAX_SPEED`]], nor than the contract's `other.max_speed`.
+    pub speed: f32,
+}
+
 /// What the sensors report at one moment: the ego, and every other vehicle that is seen, in any order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observation<'a> {

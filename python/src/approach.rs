@@ -6,7 +6,9 @@ use crate::error::{error, named, wrong_number};
 use crate::junction::{Capacity, Junction, with_prepared};
 use crate::observation::{Track, Vehicle};
 use crate::policy::Policy;
-use cede_controller::{self as cede, EnterError, Instant, NotReady, Observation, Part, PathId};
+use cede_controller::{
+    self as cede, EnterError, Instant, NotReady, Observation, Part, PathId, Sight,
+};
 use pyo3::prelude::*;
 use self_cell::self_cell;
 use std::sync::Arc;
@@ -131,6 +133,15 @@ impl Approach {
         set.map_err(|wrong| refused(py, &wrong))
     }
 
+    /// How much of some paths is in sight at `now` (s): path, from where on (m), and the most speed (m/s) out of sight.
+    fn set_sight(&mut self, now: f64, sights: Vec<(u8, f32, f32)>) -> PyResult<()> {
+        let (now, sights) = (instant(now)?, seen_from(&sights));
+        let set = self
+            .0
+            .with_dependent_mut(|_, approach| approach.set_sight(now, &sights));
+        set.map_err(error)
+    }
+
     /// The track with this number is known not to be there any more.
     fn forget(&mut self, number: u16) {
         self.0
@@ -191,6 +202,15 @@ impl Shield {
         self.0.borrow_dependent().plan().map(|plan| plan.go)
     }
 
+    /// How much of some paths is in sight at `now` (s): path, from where on (m), and the most speed (m/s) out of sight.
+    fn set_sight(&mut self, now: f64, sights: Vec<(u8, f32, f32)>) -> PyResult<()> {
+        let (now, sights) = (instant(now)?, seen_from(&sights));
+        let set = self
+            .0
+            .with_dependent_mut(|_, shield| shield.set_sight(now, &sights));
+        set.map_err(error)
+    }
+
     /// The track with this number is known not to be there any more.
     fn forget(&mut self, number: u16) {
         self.0.with_dependent_mut(|_, shield| shield.forget(number));
@@ -206,6 +226,15 @@ fn ready(shield: &Guarding<'_>, now: f64, ego: &Vehicle, tracks: &[Track]) -> Py
     shield
         .ready(now, &seen)
         .map_err(|wrong: NotReady| error(wrong))
+}
+
+fn seen_from(sights: &[(u8, f32, f32)]) -> Vec<Sight> {
+    let sight = |&(path, from, speed)| Sight {
+        path: PathId::new(path),
+        from,
+        speed,
+    };
+    sights.iter().map(sight).collect()
 }
 
 fn sensed(tracks: &[Track]) -> Vec<cede::Track> {

@@ -1,7 +1,7 @@
 //! Decisions and their reasons.
 
 use crate::error::decimal;
-use cede_controller::{self as cede, Action, Breach, Cause, Intervention, Subject};
+use cede_controller::{self as cede, Action, Breach, Cause, Condition, Intervention, Subject};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -90,6 +90,21 @@ impl Decision {
         self.0.unwatched
     }
 
+    /// How near each monitored condition of the contract is to its limit, by its name.
+    #[getter]
+    fn headroom<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        for (condition, room) in self.0.headroom.conditions() {
+            if let Some(cede::Room {
+                left, share, track, ..
+            }) = room
+            {
+                dict.set_item(condition_name(condition), Room { left, share, track })?;
+            }
+        }
+        Ok(dict)
+    }
+
     #[getter]
     fn prediction(&self) -> Option<Prediction> {
         self.0.prediction.map(|p| Prediction {
@@ -108,6 +123,36 @@ impl Decision {
     }
 }
 
+fn condition_name(condition: Condition) -> &'static str {
+    match condition {
+        Condition::EgoPosition => "ego-position",
+        Condition::EgoSpeed => "ego-speed",
+        Condition::OtherPosition => "other-position",
+        Condition::OtherSpeed => "other-speed",
+        Condition::Offset => "offset",
+        Condition::Heading => "heading",
+        Condition::Period => "period",
+        _ => "",
+    }
+}
+
+/// What is left of a tolerance.
+#[pyclass(frozen, get_all, module = "cede")]
+pub(crate) struct Room {
+    left: f32,
+    share: f32,
+    track: Option<u16>,
+}
+
+#[pymethods]
+impl Room {
+    fn __repr__(&self) -> String {
+        let Self { left, share, track } = self;
+        let track = track.map_or_else(|| "None".to_owned(), |number| number.to_string());
+        format!("Room(left={left}, share={share}, track={track})")
+    }
+}
+
 /// Why a proposal is refused.
 #[pyclass(frozen, module = "cede")]
 pub(crate) struct Reason(cede::Reason);
@@ -120,6 +165,7 @@ impl Reason {
             cede::Reason::Arrival { .. } => "arrival",
             cede::Reason::Entry { .. } => "entry",
             cede::Reason::Stop { .. } => "stop",
+            cede::Reason::Hidden { .. } => "hidden",
             _ => "",
         }
     }
@@ -134,11 +180,23 @@ impl Reason {
         }
     }
 
+    /// The path on which somebody may be out of sight.
+    #[getter]
+    fn path(&self) -> Option<u8> {
+        match self.0 {
+            cede::Reason::Hidden { path, .. } => Some(path),
+            _ => None,
+        }
+    }
+
     /// Its numbers by their names.
     #[getter]
     fn numbers<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let pairs = match self.0 {
             cede::Reason::Arrival {
+                arrives, clears, ..
+            }
+            | cede::Reason::Hidden {
                 arrives, clears, ..
             } => [("arrives", arrives), ("clears", clears)],
             cede::Reason::Entry { gap, needs, .. } => [("gap", gap), ("needs", needs)],

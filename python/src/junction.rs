@@ -16,10 +16,11 @@ const POINTS: usize = 1024;
 /// Stack (bytes) on which a junction is built: the largest is built by value.
 const STACK: usize = 64 << 20;
 
-const CLASSES: [(&str, Class); 3] = [
+const CLASSES: [(&str, Class); 4] = [
     ("car", Class::Car),
     ("lorry", Class::Lorry),
     ("bicycle", Class::Bicycle),
+    ("pedestrian", Class::Pedestrian),
 ];
 
 const CONTROLS: [(&str, Control); 5] = [
@@ -82,12 +83,17 @@ struct Draft {
     footprint: Footprint,
     line: Option<f32>,
     control: Control,
+    /// From where on (m), and how fast (m/s).
+    limits: Vec<(f32, f32)>,
+    /// Of pedestrians, m/s.
+    pace: Option<f32>,
 }
 
 /// Collects what a junction is built from. A call that raises changes nothing.
 #[pyclass(name = "JunctionBuilder", module = "cede")]
 pub(crate) struct Builder {
     tolerance: f32,
+    lateral: Option<f32>,
     paths: Vec<Draft>,
     rights: Vec<(PathId, PathId, Priority)>,
 }
@@ -95,17 +101,19 @@ pub(crate) struct Builder {
 #[pymethods]
 impl Builder {
     #[new]
-    #[pyo3(signature = (tolerance = 0.1))]
-    fn new(tolerance: f32) -> Self {
+    #[pyo3(signature = (tolerance = 0.1, lateral = None))]
+    fn new(tolerance: f32, lateral: Option<f32>) -> Self {
         Self {
             tolerance,
+            lateral,
             paths: Vec::new(),
             rights: Vec::new(),
         }
     }
 
     /// Adds a path along `points`, an array of shape (n, 2) or a list of pairs, in metres.
-    #[pyo3(signature = (points, *, kind = "car", length = 5.0, width = 2.0, line = None, control = "unknown"))]
+    #[pyo3(signature = (points, *, kind = "car", length = 5.0, width = 2.0, line = None, control = "unknown", limits = Vec::new(), pace = None))]
+    #[allow(clippy::too_many_arguments)]
     fn path(
         &mut self,
         points: PyArrayLike2<'_, f64, AllowTypeChange>,
@@ -114,6 +122,8 @@ impl Builder {
         width: f32,
         line: Option<f32>,
         control: &str,
+        limits: Vec<(f32, f32)>,
+        pace: Option<f32>,
     ) -> PyResult<u8> {
         let points = points.as_array();
         if points.ncols() != 2 {
@@ -131,8 +141,15 @@ impl Builder {
             ))
         })?;
         let control = named("control", control, &CONTROLS)?;
-        let footprint = Footprint { length, width };
-        self.push(Ok(Box::new(route)), kind, footprint, line, control)
+        self.push(Draft {
+            points: Ok(Box::new(route)),
+            class: class_named(kind)?,
+            footprint: Footprint { length, width },
+            line,
+            control,
+            limits,
+            pace,
+        })
     }
 
     /// Adds a path along the points of path `of`, for another class of vehicles.
@@ -150,7 +167,16 @@ impl Builder {
             .paths
             .get(of.index())
             .map_or(Control::Unknown, |path| path.control);
-        self.push(Err(of), kind, Footprint { length, width }, line, control)
+        self.push(Draft {
+            points: Err(of),
+            class: class_named(kind)?,
+            footprint: Footprint { length, width },
+            line,
+            control,
+            // It has those of the other path.
+            limits: Vec::new(),
+            pace: None,
+        })
     }
 
     /// Says that vehicles of path `first` have the right of way over those of path `second`, and when it counts.
@@ -169,23 +195,9 @@ impl Builder {
 }
 
 impl Builder {
-    fn push(
-        &mut self,
-        points: Result<Box<Route<POINTS>>, PathId>,
-        kind: &str,
-        footprint: Footprint,
-        line: Option<f32>,
-        control: Control,
-    ) -> PyResult<u8> {
-        let class = class_named(kind)?;
+    fn push(&mut self, path: Draft) -> PyResult<u8> {
         let number = u8::try_from(self.paths.len()).map_err(|_| error("more than 256 paths"))?;
-        self.paths.push(Draft {
-            points,
-            class,
-            footprint,
-            line,
-            control,
-        });
+        self.paths.push(path);
         Ok(number)
     }
 
@@ -228,6 +240,9 @@ impl Builder {
     fn fill<const R: usize, const P: usize>(&self) -> Result<Box<Prepared<R, P>>, JunctionError> {
         let mut builder = Prepared::<R, P>::builder();
         builder.tolerance(self.tolerance);
+        if let Some(lateral) = self.lateral {
+            builder.lateral(lateral);
+        }
         for draft in &self.paths {
             let id = match &draft.points {
                 Ok(route) => builder.path(route, draft.class, draft.footprint)?,
@@ -237,6 +252,12 @@ impl Builder {
                 builder.line(id, s)?;
             }
             builder.control(id, draft.control)?;
+            if let Some(pace) = draft.pace {
+                builder.pace(id, pace)?;
+            }
+            for &(from, speed) in &draft.limits {
+                builder.speed_limit(id, from, speed)?;
+            }
         }
         for &(first, second, priority) in &self.rights {
             builder.priority(first, second, priority)?;
@@ -252,9 +273,9 @@ pub(crate) struct Junction(pub(crate) Arc<Capacity>);
 #[pymethods]
 impl Junction {
     #[staticmethod]
-    #[pyo3(signature = (tolerance = 0.1))]
-    fn builder(tolerance: f32) -> Builder {
-        Builder::new(tolerance)
+    #[pyo3(signature = (tolerance = 0.1, lateral = None))]
+    fn builder(tolerance: f32, lateral: Option<f32>) -> Builder {
+        Builder::new(tolerance, lateral)
     }
 
     fn __len__(&self) -> usize {
@@ -280,6 +301,17 @@ impl Junction {
     fn line(&self, path: u8) -> PyResult<f32> {
         let way = self.way(path)?;
         Ok(way.path(PathId::new(path)).map_or(0.0, |path| path.line()))
+    }
+
+    /// The speed (m/s) that limits and bends allow an ego on `path` at arc length `s` (m); infinite without them.
+    fn allowed_speed(&self, path: u8, s: f32) -> PyResult<f32> {
+        Ok(self.way(path)?.profile().speed(s))
+    }
+
+    /// The largest acceleration (m/s²) with which an ego on `path` keeps to limits and bends; infinite without them.
+    #[pyo3(signature = (path, s, speed, response = 0.1))]
+    fn allowed_acceleration(&self, path: u8, s: f32, speed: f32, response: f32) -> PyResult<f32> {
+        Ok(self.way(path)?.profile().acceleration(s, speed, response))
     }
 
     /// A vehicle on `path` at arc length `s` (m), exactly on it.

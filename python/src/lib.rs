@@ -30,6 +30,7 @@ fn _cede(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<approach::Shield>()?;
     module.add_class::<decision::Decision>()?;
     module.add_class::<decision::Reason>()?;
+    module.add_class::<decision::Room>()?;
     module.add_class::<decision::Fault>()?;
     module.add_class::<decision::Prediction>()?;
     module.add_class::<dataset::Dataset>()?;

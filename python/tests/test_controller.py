@@ -171,3 +171,53 @@ def test_the_embedded_policy_and_its_replacement():
     approach.set_policy(policy)
     approach.set_contract(cede.Contract("all-way-stop"))
     assert approach.contract.precedence is not None
+
+
+def test_headroom_says_how_near_the_contract_is_to_its_limits():
+    junction, left, oncoming = crossing()
+    shield = cede.Shield(junction, left)
+    ego = junction.vehicle(left, 10.0, 0.0)
+    car = [cede.Track(7, oncoming, junction.vehicle(oncoming, 10.0, 0.0))]
+    shield.filter(0.0, ego, car, 0.0)
+    headroom = shield.filter(0.1, ego, car, 0.0).headroom
+    assert headroom["other-speed"].track == 7
+    assert all(room.left >= 0.0 for room in headroom.values())
+    jumped = [cede.Track(7, oncoming, junction.vehicle(oncoming, 12.0, 0.0))]
+    decision = shield.filter(0.2, ego, jumped, 0.0)
+    assert decision.breach == 7 and decision.headroom["other-position"].left < 0.0
+
+
+def test_limits_and_bends_bound_the_proposal():
+    builder = cede.Junction.builder(lateral=2.0)
+    path = builder.path(LEFT, limits=[(0.0, 5.0)])
+    junction = builder.build()
+    assert junction.allowed_speed(path, 1.0) == 5.0
+    assert junction.allowed_speed(path, 38.0) < 5.0
+    assert junction.allowed_acceleration(path, 1.0, 9.0) < 0.0
+    decision = cede.Drive().enter(junction, path).decide(0.0, junction.vehicle(path, 1.0, 9.0))
+    assert decision.acceleration < 0.0
+
+
+def test_somebody_out_of_sight_is_a_reason():
+    junction, left, oncoming = crossing()
+    zone = junction.conflict(left, oncoming).zones[0]
+    shield = cede.Shield(junction, left)
+    shield.set_sight(0.0, [(oncoming, zone[2][0] - 5.0, 15.0)])
+    decision = shield.filter(0.0, junction.vehicle(left, zone[1][0] - 3.0, 3.0), [], 3.0)
+    assert (decision.reason.kind, decision.reason.path) == ("hidden", oncoming)
+    with pytest.raises(cede.Error, match="it must be on the path"):
+        shield.set_sight(0.1, [(oncoming, 1e4, 15.0)])
+
+
+def test_a_pedestrian_may_turn_back():
+    builder = cede.Junction.builder()
+    road = builder.path([(-40.0, 0.0), (40.0, 0.0)])
+    square = {"length": 0.6, "width": 0.6}
+    over = builder.path([(0.0, -7.0), (0.0, 7.0)], kind="pedestrian", pace=2.0, **square)
+    junction = builder.build()
+    shield = cede.Shield(junction, road)
+    before = junction.conflict(road, over).zones[0][1][0] - 3.7
+    ego = junction.vehicle(road, before, 4.0)
+    gone = cede.Track(3, over, junction.vehicle(over, 10.0, 1.0), kind="pedestrian")
+    decision = shield.filter(0.0, ego, [gone], 3.0)
+    assert decision.reason.kind == "arrival" and decision.reason.other == 3

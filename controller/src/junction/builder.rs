@@ -5,7 +5,10 @@ use crate::junction::conflict::{ConflictKind, Priority, RightOfWay, RouteConflic
 use crate::junction::control::Control;
 use crate::junction::error::JunctionError;
 use crate::junction::meeting::within;
-use crate::junction::path::{Class, MAX_FOOTPRINT, MAX_PATH_LENGTH, Path, PathId};
+use crate::junction::path::{
+    Class, MAX_FOOTPRINT, MAX_PACE, MAX_PATH_LENGTH, MAX_SPEED_LIMIT, PACE, Path, PathId,
+    SpeedLimit,
+};
 use crate::junction::polyline::Polyline;
 use crate::junction::prepared::Junction;
 use crate::junction::route::Route;
@@ -14,6 +17,9 @@ use heapless::Vec;
 
 /// Largest tolerance of a junction in metres.
 pub const MAX_TOLERANCE: f32 = 1.0;
+
+/// Largest lateral acceleration of a junction in m/s².
+pub const MAX_LATERAL: f32 = 20.0;
 
 /// The tolerance (m) of a junction that was not given one.
 const TOLERANCE: f32 = 0.1;
@@ -43,7 +49,9 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
                 points: Vec::new(),
                 arc: Vec::new(),
                 conflicts: Vec::new(),
+                limits: Vec::new(),
                 tolerance: TOLERANCE,
+                lateral: f32::INFINITY,
             },
             lines: Vec::new(),
         }
@@ -53,6 +61,13 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
     /// [0, [`MAX_TOLERANCE`]], 0.1 unless it is set. All zones are larger by it.
     pub const fn tolerance(&mut self, tolerance: f32) -> &mut Self {
         self.junction.tolerance = tolerance;
+        self
+    }
+
+    /// The lateral acceleration (m/s²), at most, that the ego is to have in bends: (0, [`MAX_LATERAL`]]; bends do not slow it
+    /// down unless it is set. It bounds proposals; plans know nothing of it.
+    pub const fn lateral(&mut self, lateral: f32) -> &mut Self {
+        self.junction.lateral = lateral;
         self
     }
 
@@ -94,6 +109,7 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
             line: 0.0,
             waits_at_line: false,
             control: Control::Unknown,
+            pace: PACE,
             range: start..end,
         })?;
         Ok(id)
@@ -117,6 +133,10 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
             footprint,
             ..path
         })?;
+        let limits = self.junction.limits.get(of.index()).cloned();
+        if let (Some(its), Some(limits)) = (self.junction.limits.get_mut(id.index()), limits) {
+            *its = limits;
+        }
         Ok(id)
     }
 
@@ -141,6 +161,57 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
         }
         if let Some(line) = self.lines.get_mut(path.index()) {
             *line = Some(s);
+        }
+        Ok(())
+    }
+
+    /// Says that an ego on `path` drives at `speed` (m/s) or slower from arc length `from` (m) on, until the next limit; nothing
+    /// is said of others, nor of paths that cannot be entered. It bounds proposals; plans know nothing of it.
+    ///
+    /// # Errors
+    /// [`JunctionError::UnknownPath`], [`JunctionError::SpeedLimit`], [`JunctionError::TooManyLimits`].
+    pub fn speed_limit(
+        &mut self,
+        path: PathId,
+        from: f32,
+        speed: f32,
+    ) -> Result<(), JunctionError> {
+        self.known(path)?;
+        let length = self.junction.polyline(path).map_or(0.0, Polyline::length);
+        if !(speed > 0.0 && speed <= MAX_SPEED_LIMIT && from >= 0.0 && from <= length) {
+            return Err(JunctionError::SpeedLimit {
+                path,
+                from,
+                speed,
+                length,
+            });
+        }
+        if let Some(limits) = self.junction.limits.get_mut(path.index()) {
+            let full = JunctionError::TooManyLimits { path };
+            limits.push(SpeedLimit { from, speed }).map_err(|_| full)?;
+            for i in (1..limits.len()).rev() {
+                if let Some([before, after]) = limits.get_mut(i - 1..=i)
+                    && after.from < before.from
+                {
+                    core::mem::swap(before, after);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Sets the highest speed (m/s) of pedestrians on `path`, either way: (0, [`MAX_PACE`]], [`PACE`] unless it is set. Of other
+    /// classes it says nothing.
+    ///
+    /// # Errors
+    /// [`JunctionError::UnknownPath`], [`JunctionError::Pace`].
+    pub fn pace(&mut self, path: PathId, pace: f32) -> Result<(), JunctionError> {
+        self.known(path)?;
+        if !(pace > 0.0 && pace <= MAX_PACE) {
+            return Err(JunctionError::Pace { path, value: pace });
+        }
+        if let Some(path) = self.junction.paths.get_mut(path.index()) {
+            path.pace = pace;
         }
         Ok(())
     }
@@ -219,6 +290,10 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
         }
         if self.junction.paths.is_empty() {
             return Err(JunctionError::NoPaths);
+        }
+        let value = self.junction.lateral;
+        if !(value > 0.0 && (value <= MAX_LATERAL || value.is_infinite())) {
+            return Err(JunctionError::Lateral { value });
         }
         self.fill()?;
         Ok(&self.junction)
@@ -353,6 +428,7 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
         self.junction.paths.push(path).map_err(|_| full)?;
         // There is room for the first `E`.
         let _ = self.junction.conflicts.push([RouteConflict::NONE; R]);
+        let _ = self.junction.limits.push(Vec::new());
         self.lines.push(None).map_err(|_| full)
     }
 }

@@ -1,7 +1,10 @@
 //! Why a junction cannot be built.
 
+use crate::junction::builder::MAX_LATERAL;
 use crate::junction::builder::MAX_TOLERANCE;
-use crate::junction::path::{MAX_FOOTPRINT, MAX_PATH_LENGTH, PathId};
+use crate::junction::path::{
+    MAX_FOOTPRINT, MAX_LIMITS, MAX_PACE, MAX_PATH_LENGTH, MAX_SPEED_LIMIT, PathId,
+};
 use core::fmt::{Display, Formatter, Result};
 
 /// Why a junction cannot be built. Its display says what to do about it.
@@ -75,6 +78,34 @@ pub enum JunctionError {
         /// The path's length in metres.
         length: f32,
     },
+    /// A speed limit is not above 0 and up to [`MAX_SPEED_LIMIT`], or not on its path.
+    SpeedLimit {
+        /// The path.
+        path: PathId,
+        /// The arc length (m) from which it was to hold.
+        from: f32,
+        /// The speed in m/s.
+        speed: f32,
+        /// The path's length in metres.
+        length: f32,
+    },
+    /// More speed limits of one path than [`MAX_LIMITS`].
+    TooManyLimits {
+        /// The path.
+        path: PathId,
+    },
+    /// The lateral acceleration is not in (0, [`MAX_LATERAL`]].
+    Lateral {
+        /// In m/s².
+        value: f32,
+    },
+    /// The highest speed of pedestrians is not in (0, [`MAX_PACE`]].
+    Pace {
+        /// The path.
+        path: PathId,
+        /// In m/s.
+        value: f32,
+    },
     /// A path was given the right of way over itself.
     RightOfWay {
         /// The path.
@@ -133,6 +164,27 @@ impl Display for JunctionError {
             } => write!(
                 f,
                 "{path}: a line at {value} m: it must be on the path, in [0, {length}] m"
+            ),
+            Self::SpeedLimit {
+                path,
+                from,
+                speed,
+                length,
+            } => write!(
+                f,
+                "{path}: a speed limit of {speed} m/s from {from} m on: it must be in (0, {MAX_SPEED_LIMIT}] m/s, from a place in [0, {length}] m"
+            ),
+            Self::TooManyLimits { path } => write!(
+                f,
+                "{path}: more than {MAX_LIMITS} speed limits: leave out those that matter least"
+            ),
+            Self::Lateral { value } => write!(
+                f,
+                "a lateral acceleration of {value} m/s²: it must be in (0, {MAX_LATERAL}] m/s²"
+            ),
+            Self::Pace { path, value } => write!(
+                f,
+                "{path}: pedestrians of {value} m/s at most: it must be in (0, {MAX_PACE}] m/s"
             ),
             Self::RightOfWay { path } => write!(
                 f,

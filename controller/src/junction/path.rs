@@ -10,6 +10,27 @@ pub const MAX_FOOTPRINT: f32 = 40.0;
 /// Longest path of a junction in metres: an `f32` resolves arc lengths up to it to 0.03 mm.
 pub const MAX_PATH_LENGTH: f32 = 512.0;
 
+/// Most speed limits of a path.
+pub const MAX_LIMITS: usize = 4;
+
+/// Highest speed limit in m/s.
+pub const MAX_SPEED_LIMIT: f32 = 100.0;
+
+/// Highest speed (m/s) of a pedestrian for which the builder was not given one.
+pub const PACE: f32 = 3.0;
+
+/// Highest speed (m/s) that a pedestrian may be given.
+pub const MAX_PACE: f32 = 10.0;
+
+/// How fast an ego drives from some place of its path on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpeedLimit {
+    /// Arc length (m) of the footprint's centre from which it holds, until the next one.
+    pub from: f32,
+    /// In m/s, in (0, [`MAX_SPEED_LIMIT`]].
+    pub speed: f32,
+}
+
 /// What kind of vehicle: a track has one, and so has a path.
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -21,6 +42,8 @@ pub enum Class {
     Lorry,
     /// A bicycle or a motorcycle.
     Bicycle,
+    /// Somebody on foot on a crossing, who may turn back at any time. An ego is none.
+    Pedestrian,
 }
 
 /// The number of a path in its junction, counted from 0 in the order in which the builder was given the paths.
@@ -56,6 +79,7 @@ pub struct Path {
     pub(super) line: f32,
     pub(super) waits_at_line: bool,
     pub(super) control: Control,
+    pub(super) pace: f32,
     /// Its points in the pool.
     pub(super) range: Range<usize>,
 }
@@ -89,6 +113,12 @@ impl Path {
     #[must_use]
     pub const fn waits_at_line(&self) -> bool {
         self.waits_at_line
+    }
+
+    /// Highest speed (m/s) of a pedestrian on it, either way.
+    #[must_use]
+    pub const fn pace(&self) -> f32 {
+        self.pace
     }
 
     /// What obliges a vehicle to give way where it enters the junction; unknown unless the builder was told.

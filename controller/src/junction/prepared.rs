@@ -3,7 +3,7 @@
 use crate::geometry::Point;
 use crate::junction::builder::JunctionBuilder;
 use crate::junction::conflict::RouteConflict;
-use crate::junction::path::{Path, PathId};
+use crate::junction::path::{Class, MAX_LIMITS, Path, PathId, SpeedLimit};
 use crate::junction::polyline::Polyline;
 use crate::junction::way::Way;
 use heapless::Vec;
@@ -40,7 +40,11 @@ pub struct Junction<const R: usize, const P: usize, const E: usize = R> {
     pub(super) arc: Vec<f32, P>,
     /// How each path that can be entered meets each path.
     pub(super) conflicts: Vec<[RouteConflict; R], E>,
+    /// The speed limits along each path that can be entered, in the order of their places.
+    pub(super) limits: Vec<Vec<SpeedLimit, MAX_LIMITS>, E>,
     pub(super) tolerance: f32,
+    /// Lateral acceleration (m/s²) in bends, at most.
+    pub(super) lateral: f32,
 }
 
 impl<const R: usize, const P: usize, const E: usize> Junction<R, P, E> {
@@ -80,11 +84,12 @@ impl<const R: usize, const P: usize, const E: usize> Junction<R, P, E> {
         self.way(ego)?.conflict(other)
     }
 
-    /// The junction as the vehicles of path `ego` see it; `None` if `ego` is not among the first `E` or
-    /// does not exist.
+    /// The junction as the vehicles of path `ego` see it; `None` if `ego` is not among the first `E`, does not exist, or
+    /// is for pedestrians.
     #[must_use]
     pub fn way(&self, ego: PathId) -> Option<Way<'_>> {
-        self.path(ego)?;
+        self.path(ego)
+            .filter(|path| path.class() != Class::Pedestrian)?;
         let row = self.conflicts.get(ego.index())?;
         Some(Way {
             ego,
@@ -92,7 +97,9 @@ impl<const R: usize, const P: usize, const E: usize> Junction<R, P, E> {
             points: &self.points,
             arc: &self.arc,
             conflicts: row.get(..self.paths.len())?,
+            limits: self.limits.get(ego.index())?,
             tolerance: self.tolerance,
+            lateral: self.lateral,
         })
     }
 

@@ -2,8 +2,9 @@
 
 use crate::geometry::Point;
 use crate::junction::conflict::RouteConflict;
-use crate::junction::path::{Path, PathId};
+use crate::junction::path::{Path, PathId, SpeedLimit};
 use crate::junction::polyline::Polyline;
+use crate::junction::profile::Profile;
 
 /// A junction as the vehicles of one path see it: all paths, and how this one meets each of them.
 #[derive(Clone, Copy, Debug)]
@@ -14,7 +15,9 @@ pub struct Way<'j> {
     pub(super) arc: &'j [f32],
     /// One for each path.
     pub(super) conflicts: &'j [RouteConflict],
+    pub(super) limits: &'j [SpeedLimit],
     pub(super) tolerance: f32,
+    pub(super) lateral: f32,
 }
 
 impl<'j> Way<'j> {
@@ -55,6 +58,13 @@ impl<'j> Way<'j> {
             self.points.get(range.clone())?,
             self.arc.get(range.clone())?,
         ))
+    }
+
+    /// What bounds the ego's speed along its path, whoever is there.
+    #[must_use]
+    pub fn profile(self) -> Profile<'j> {
+        let polyline = self.polyline(self.ego).unwrap_or(Polyline::new(&[], &[]));
+        Profile::new(polyline, self.limits, self.lateral)
     }
 
     /// How far (m) any point of a vehicle's footprint may be from where it is on its route.

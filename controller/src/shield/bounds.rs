@@ -3,6 +3,7 @@
 use super::contract::Contract;
 use super::margin;
 use super::reach::Reach;
+use crate::headroom::Room;
 use crate::junction::zone::Span;
 
 /// Bounds on another vehicle's arc length (m) and speed (m/s).
@@ -48,13 +49,16 @@ impl Bounds {
         }
     }
 
-    /// Whether a vehicle within these bounds can be sensed at arc length `s` (m) with `speed` (m/s), `slack` for rounding.
-    pub(crate) fn allow(&self, contract: &Contract, s: f32, speed: f32) -> bool {
+    /// How far inside of what a vehicle within these bounds can be sensed at arc length `s` (m) and `speed` (m/s) are, `slack`
+    /// for rounding.
+    pub(crate) fn rooms(&self, contract: &Contract, s: f32, speed: f32) -> [Room; 2] {
         let around = |span: Span, error: f32, value: f32| {
             let spare = error + contract.slack;
-            span.from - spare <= value && value <= span.to + spare
+            Room::between(value, [span.from - spare, span.to + spare])
         };
-        around(self.s, contract.position_error, s)
-            && around(self.speed, contract.speed_error, speed)
+        [
+            around(self.s, contract.position_error, s),
+            around(self.speed, contract.speed_error, speed),
+        ]
     }
 }

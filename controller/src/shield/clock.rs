@@ -34,6 +34,8 @@ pub(crate) enum Tick {
         periods: u16,
         /// Whether one period has passed, within the jitter.
         on_time: bool,
+        /// Microseconds that are left of the jitter, and those that can be left at most.
+        left: [i64; 2],
     },
 }
 
@@ -61,18 +63,24 @@ impl Clock {
         let periods = now.since(calls.first).saturating_add(half) / period;
         let gone = periods.saturating_sub(calls.periods);
         let spare = 2 * micros(contract.jitter) + 1;
+        let left = signed(spare).saturating_sub(signed(elapsed.abs_diff(period)));
         calls.last = now;
         calls.periods = periods;
         Tick::Next {
             elapsed,
             periods: u16::try_from(gone).unwrap_or(u16::MAX),
-            on_time: elapsed.abs_diff(period) <= spare,
+            on_time: left >= 0,
+            left: [left, signed(spare)],
         }
     }
 
     pub(crate) fn last(&self) -> Option<Instant> {
         self.calls.map(|calls| calls.last)
     }
+}
+
+fn signed(micros: u64) -> i64 {
+    i64::try_from(micros).unwrap_or(i64::MAX)
 }
 
 #[cfg(test)]
@@ -84,10 +92,11 @@ mod tests {
         let contract = Contract::WORST_CASE;
         let mut clock = Clock::default();
         let mut at = |millis| clock.tick(&contract, Instant::from_millis(millis));
-        let next = |elapsed, periods, on_time| Tick::Next {
+        let next = |elapsed: u64, periods, on_time| Tick::Next {
             elapsed,
             periods,
             on_time,
+            left: [1 - signed(elapsed.abs_diff(100_000)), 1],
         };
         assert_eq!(at(5000), Tick::First);
         assert_eq!(at(5100), next(100_000, 1, true));

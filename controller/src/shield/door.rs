@@ -3,8 +3,9 @@
 use super::contract::Contract;
 use crate::fault::{Fault, Field, InputFault, Subject};
 use crate::geometry::{Point, Pose, distance};
+use crate::headroom::Room;
 use crate::junction::zone::INFLATION;
-use crate::junction::{PathId, Polyline, Route, Way};
+use crate::junction::{Class, PathId, Polyline, Route, Way};
 use crate::observation::{Candidate, Track, Vehicle};
 
 /// A direction whose cosine to its path is below this points elsewhere: 60°.
@@ -13,15 +14,24 @@ const ALIGNED: f32 = 0.5;
 /// The shortest and the longest direction that counts as one.
 const UNIT: [f32; 2] = [0.9, 1.1];
 
-/// The ego, its speed not negative.
+/// A vehicle whose numbers are in their ranges.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Admitted {
+    /// Its speed is not negative.
+    pub(crate) vehicle: Vehicle,
+    /// What is left of the offset from its path, and of its heading.
+    pub(crate) pose: [Room; 2],
+}
+
+/// The ego.
 ///
 /// # Errors
 /// The first number that is out of its range.
-pub(crate) fn ego(way: Way<'_>, contract: &Contract, vehicle: &Vehicle) -> Result<Vehicle, Fault> {
+pub(crate) fn ego(way: Way<'_>, contract: &Contract, vehicle: &Vehicle) -> Result<Admitted, Fault> {
     vehicle_on(way, contract, Subject::Ego, way.ego(), *vehicle)
 }
 
-/// The vehicle of `track` on one of its candidates, its speed not negative.
+/// The vehicle of `track` on one of its candidates.
 ///
 /// # Errors
 /// The first number that is out of its range.
@@ -30,7 +40,7 @@ pub(crate) fn track(
     contract: &Contract,
     track: &Track,
     candidate: Candidate,
-) -> Result<Vehicle, Fault> {
+) -> Result<Admitted, Fault> {
     let subject = Subject::Track(track.number);
     let known = way
         .path(candidate.path)
@@ -65,15 +75,16 @@ fn vehicle_on(
     subject: Subject,
     path: PathId,
     mut vehicle: Vehicle,
-) -> Result<Vehicle, Fault> {
-    let check = |field, value, [low, high]: [f32; 2]| {
-        // Nothing that is not a number is in a range.
-        if low <= value && value <= high {
-            Ok(())
+) -> Result<Admitted, Fault> {
+    let keep = |room: Room, field, value, range| {
+        if room.holds() {
+            Ok(room)
         } else {
-            Err(refused(subject, field, value, [low, high]))
+            Err(refused(subject, field, value, range))
         }
     };
+    let check = |field, value, range| keep(Room::between(value, range), field, value, range);
+    let walks = (way.path(path)).is_some_and(|path| path.class() == Class::Pedestrian);
     let Some(line) = way.polyline(path) else {
         return Err(refused(
             subject,
@@ -99,16 +110,23 @@ fn vehicle_on(
     let norm = crate::geometry::length(&direction);
     check(Field::Direction, norm, UNIT)?;
     let away = distance(&vehicle.pose.position, &line.pose(vehicle.s).position);
-    check(Field::Offset, away, [0.0, spare])?;
-    check(
-        Field::Heading,
-        aligned(line, vehicle, spare) / norm,
-        [ALIGNED, 2.0],
-    )?;
+    let offset = Room::up_to(spare, away);
+    let offset = keep(offset, Field::Offset, away, [0.0, spare])?;
+    let cosine = aligned(line, vehicle, spare) / norm;
+    let heading = Room::cosine(ALIGNED, cosine);
+    let heading = if walks {
+        // It may turn back.
+        Room::cosine(ALIGNED, 1.0)
+    } else {
+        keep(heading, Field::Heading, cosine, [ALIGNED, 2.0])?
+    };
     if vehicle.speed < 0.0 {
         vehicle.speed = 0.0;
     }
-    Ok(vehicle)
+    Ok(Admitted {
+        vehicle,
+        pose: [offset, heading],
+    })
 }
 
 /// How well the vehicle points along its path, which may have a kink within `spare` (m) of where it is.

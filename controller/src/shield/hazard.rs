@@ -1,19 +1,21 @@
 //! The conflict zones ahead, as distances from where the ego is now.
 
 use super::contract::{Contract, Precedence};
+use super::hidden::MAX_SIGHTS;
 use super::own::Own;
 use super::precedence::has;
 use super::reach::Reach;
 use super::rules::Rules;
 use super::tracks::{News, Other, Tracks};
 use super::unwatched::Closed;
+use super::walkers::MAX_WALKERS;
 use crate::junction::zone::{FAR, MAX_ZONES, Zone};
 use crate::junction::{MAX_OTHERS, PathId, RightOfWay, RouteConflict, Way};
 use crate::real::Real;
 use heapless::Vec;
 
-/// Every zone of every other, and what is closed.
-const CAPACITY: usize = MAX_OTHERS * MAX_ZONES + 1;
+/// Every zone of every other, of everybody out of sight and of every pedestrian, and what is closed.
+const CAPACITY: usize = (MAX_OTHERS + MAX_SIGHTS + MAX_WALKERS) * MAX_ZONES + 1;
 
 /// An ego that comes to rest no farther beyond its line than this (m) waits at it.
 const BEYOND: f32 = 1.0;
@@ -23,10 +25,8 @@ const BEYOND: f32 = 1.0;
 /// All distances are metres from where the ego is, sensing errors included on the safe side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Hazard {
-    /// Track number of the other.
-    pub other: u16,
-    /// Which of the tracks that is.
-    pub place: u8,
+    /// Who may be in it.
+    pub who: Who,
     /// Number of the zone.
     pub zone: u8,
     /// The plan that is remembered was not verified against it.
@@ -43,6 +43,21 @@ pub(crate) struct Hazard {
     pub rest_beyond: f32,
     /// What clearing in time means.
     pub passage: Passage,
+}
+
+/// Who may be in a zone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Who {
+    /// A track.
+    Watched {
+        number: u16,
+        /// Which of those that are watched it is.
+        place: u8,
+    },
+    /// A track that nobody watches.
+    Unwatched(u16),
+    /// Somebody out of sight on this path.
+    Hidden(PathId),
 }
 
 /// When the ego may clear a hazard.
@@ -65,6 +80,13 @@ pub(crate) enum Passage {
         /// the lane.
         arrives: f32,
     },
+    /// Before a pedestrian comes to its zone, from whichever side.
+    Walks {
+        /// Metres, at least, from the pedestrian to its zone; negative if it may be in it.
+        distance: f32,
+        /// The pedestrian's speed, at most, in m/s.
+        speed: f32,
+    },
     /// Not as long as the other is where it is: the ego is behind it in one lane.
     Never,
 }
@@ -84,7 +106,7 @@ impl Hazards {
     /// Adds the hazards of everybody who matters, but for those that the rule of precedence takes away. In place,
     /// because they are the largest thing on the stack.
     ///
-    /// Cost: O(zones²) for the sorting, at most 25².
+    /// Cost: O(zones²) for the sorting, at most 61².
     pub(crate) fn add<const N: usize, R: Rules>(
         &mut self,
         contract: &Contract,
@@ -95,27 +117,16 @@ impl Hazards {
         // From where the first zone that precedence opens begins to where the last one ends.
         let mut open = [FAR, -FAR];
         for (place, other) in (0_u8..).zip(tracks.iter()) {
-            let Some(conflict) = way.conflict(other.path) else {
-                continue;
-            };
-            for (zone, hazard) in of::<R>(contract, way, ego, other) {
-                if has(other.claims, hazard.zone)
-                    && granted(contract, way, hazard.passage, zone, (ego, other))
-                {
-                    let entry = zone.ego.from - ego.s - contract.position_error;
-                    open = [Real::min(open[0], entry), Real::max(open[1], hazard.target)];
-                    continue;
-                }
-                let clear = clear_of::<R>(conflict, zone, ego, other);
-                let clear = clear - ego.s - contract.position_error;
-                let waits = !zone.is_lane() && clear >= 0.0;
-                self.insert::<R>(Hazard {
-                    place,
-                    yields: conflict.right_of_way == RightOfWay::Other,
-                    rest: if waits { clear } else { hazard.rest },
-                    ..hazard
-                });
-            }
+            let number = other.number;
+            let who = Who::Watched { number, place };
+            self.add_other::<R>((contract, way), (ego, other), who, &mut open);
+        }
+        for other in tracks.hidden.others::<R>(contract, way, ego) {
+            let who = Who::Hidden(other.path);
+            self.add_other::<R>((contract, way), (ego, &other), who, &mut open);
+        }
+        for hazard in tracks.walkers.hazards(contract, way, ego) {
+            self.insert::<R>(hazard);
         }
         if open[0] >= 0.0 {
             self.keep_clear(open);
@@ -124,6 +135,38 @@ impl Hazards {
             self.insert::<R>(Hazard::closed(contract, ego, closed));
         }
         self.look_beyond();
+    }
+
+    /// Adds the hazards of one other, and notes those that precedence opens.
+    #[inline(never)] // Once in flash.
+    fn add_other<R: Rules>(
+        &mut self,
+        (contract, way): (&Contract, Way<'_>),
+        (ego, other): (&Own, &Other),
+        who: Who,
+        open: &mut [f32; 2],
+    ) {
+        let Some(conflict) = way.conflict(other.path) else {
+            return;
+        };
+        for (zone, hazard) in of::<R>(contract, way, ego, other) {
+            if has(other.claims, hazard.zone)
+                && granted(contract, way, hazard.passage, zone, (ego, other))
+            {
+                let entry = zone.ego.from - ego.s - contract.position_error;
+                *open = [Real::min(open[0], entry), Real::max(open[1], hazard.target)];
+                continue;
+            }
+            let clear = clear_of::<R>(conflict, zone, ego, other);
+            let clear = clear - ego.s - contract.position_error;
+            let waits = !zone.is_lane() && clear >= 0.0;
+            self.insert::<R>(Hazard {
+                who,
+                yields: conflict.right_of_way == RightOfWay::Other,
+                rest: if waits { clear } else { hazard.rest },
+                ..hazard
+            });
+        }
     }
 
     /// In zones that precedence opens, the ego waits only for those who have the right of way. Whoever it holds up there
@@ -166,7 +209,7 @@ impl Hazards {
     }
 
     fn insert<R: Rules>(&mut self, hazard: Hazard) {
-        // 8 others of 3 zones and what is closed: `Shield` and `MAX_ZONES` see to it that there are no more.
+        // 8 others, 8 edges of sight and 4 pedestrians of 3 zones each, and what is closed: `Shield` and `MAX_ZONES` see to it that there are no more.
         let _ = self.sorted.push(hazard);
         for i in (1..self.sorted.len()).rev() {
             if let Some([before, after]) = self.sorted.get_mut(i - 1..=i)
@@ -189,14 +232,13 @@ impl Hazards {
 impl Hazard {
     /// Whether nobody watches it.
     pub(super) const fn is_closed(&self) -> bool {
-        self.place == u8::MAX
+        matches!(self.who, Who::Unwatched(_))
     }
 
     /// Zones that nobody watches.
     pub(super) fn closed(contract: &Contract, ego: &Own, closed: Closed) -> Self {
         Self {
-            other: closed.number,
-            place: u8::MAX,
+            who: Who::Unwatched(closed.number),
             zone: u8::MAX,
             suspect: false,
             yields: false,
@@ -260,10 +302,12 @@ fn hazard<R: Rules>(
     let stop = zone.ego.from - ego.s - error;
     let speed = bounds.speed.to;
     let crossing = Hazard {
-        other: other.number,
-        place: 0,
+        who: Who::Watched {
+            number: other.number,
+            place: 0,
+        },
         zone: index,
-        suspect: other.news != News::None,
+        suspect: !matches!(other.news, News::None | News::Emerged),
         yields: false,
         // The ego is then past the zone by twice the error, so that it will be seen to be.
         target: R::cleared_at(zone) - ego.s + 3.0 * error,
@@ -355,7 +399,7 @@ pub(super) fn granted(
     let settled = match passage {
         Passage::Before { .. } => true,
         Passage::Ahead { .. } => ego.least >= arrival(way, rule, way.ego()),
-        Passage::Never => false,
+        Passage::Walks { .. } | Passage::Never => false,
     };
     let farthest = Reach {
         distance: other.bounds.s.to,

@@ -176,6 +176,11 @@ pub fn clears_before<R: Real>(contract: &Contract, distance: R, rush: Reach<R>) 
     distance - rush.distance - R::of(contract.slack)
 }
 
+/// Metres that are left between a pedestrian of at most `speed` (m/s) and its zone, `distance` away from it, after `time` (s).
+pub fn walks_clear<R: Real>(contract: &Contract, distance: R, speed: R, time: R) -> R {
+    distance - speed * time - R::of(contract.slack)
+}
+
 /// The gap (m) that an other at `speed` needs to stop behind an ego at `ego_speed`, however hard it
 /// accelerates before it reacts, and however hard the ego brakes within its means.
 pub fn safe_gap<R: Real>(contract: &Contract, speed: R, ego_speed: R) -> R {

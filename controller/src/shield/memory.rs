@@ -7,6 +7,7 @@ use super::margin;
 use super::own::Own;
 use super::plan::Plan;
 use super::reach::Reach;
+use crate::headroom::Room;
 use crate::instant::{Instant, micros};
 use crate::junction::zone::{FAR, Span};
 use crate::observation::Vehicle;
@@ -111,17 +112,24 @@ impl Memory {
         self.last = None;
     }
 
-    /// Notes where the ego is at `now`; and whether its commands can have brought it there.
-    pub(crate) fn note(&mut self, contract: &Contract, ego: &Vehicle, now: Instant) -> (Own, bool) {
+    /// Notes where the ego is at `now`; and what is left until its commands cannot have brought it there, of its place and
+    /// of its speed.
+    pub(crate) fn note(
+        &mut self,
+        contract: &Contract,
+        ego: &Vehicle,
+        now: Instant,
+    ) -> (Own, Option<[Room; 2]>) {
         let seen = Bounds::sensed(contract, ego.s, ego.speed);
         let expected = self.expected(contract, now);
         let common = expected.map(|expected| both(contract, expected, seen));
-        let possible = !matches!(common, Some(None));
-        let own = Own::new(contract, ego, if possible { self.least } else { -FAR });
-        self.last = Some((common.flatten().unwrap_or(seen), now));
+        let possible = common.filter(|&(_, rooms)| Room::hold(rooms));
+        let unknown = common.is_none() || possible.is_some();
+        let own = Own::new(contract, ego, if unknown { self.least } else { -FAR });
+        self.last = Some((possible.map_or(seen, |(bounds, _)| bounds), now));
         self.least = own.least;
         self.blind = 0;
-        (own, possible)
+        (own, common.map(|(_, rooms)| rooms))
     }
 
     /// Where the ego may be at `now`, and how fast, by when it was seen before.
@@ -162,8 +170,8 @@ impl Memory {
     }
 }
 
-/// What is in both; nothing, if that is empty by more than rounding.
-fn both(contract: &Contract, expected: Bounds, seen: Bounds) -> Option<Bounds> {
+/// What is in both, and what is left of place and speed until that is empty by more than rounding.
+fn both(contract: &Contract, expected: Bounds, seen: Bounds) -> (Bounds, [Room; 2]) {
     let common = |a: Span, b: Span| {
         let from = if a.from > b.from { a.from } else { b.from };
         let to = if a.to < b.to { a.to } else { b.to };
@@ -171,10 +179,11 @@ fn both(contract: &Contract, expected: Bounds, seen: Bounds) -> Option<Bounds> {
             from: if from < to { from } else { to },
             to: if from < to { to } else { from },
         };
-        (from <= to + contract.slack).then_some(rounded)
+        let (a, b) = (a.to - a.from, b.to - b.from);
+        let most = if a < b { a } else { b } + contract.slack;
+        (rounded, Room::of(to + contract.slack - from, most))
     };
-    Some(Bounds {
-        s: common(expected.s, seen.s)?,
-        speed: common(expected.speed, seen.speed)?,
-    })
+    let (s, place) = common(expected.s, seen.s);
+    let (speed, pace) = common(expected.speed, seen.speed);
+    (Bounds { s, speed }, [place, pace])
 }

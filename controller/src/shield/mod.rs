@@ -12,6 +12,7 @@ mod clock;
 mod contract;
 pub(crate) mod door;
 mod hazard;
+mod hidden;
 pub mod margin;
 mod memory;
 mod own;
@@ -25,23 +26,28 @@ pub(crate) mod tracks;
 mod unwatched;
 mod verified;
 pub(crate) mod waiting;
+mod walkers;
 
 pub use bounds::Bounds;
 pub use contract::{Contract, ContractBuilder, ContractError, Ego, Follower, Other, Precedence};
+pub use hidden::{MAX_SIGHTS, SightError};
 pub use plan::Plan;
 use rules::{Rules, Sound};
 
 use crate::decision::{Action, Breach, Cause, Decision, Intervention, Reason};
 use crate::fault::Fault;
+use crate::headroom::{Headroom, Room};
 use crate::instant::Instant;
 use crate::junction::zone::FAR;
-use crate::junction::{Junction, MAX_OTHERS, PathId, RightOfWay, Way};
-use crate::observation::{Observation, Vehicle};
+use crate::junction::{Class, Junction, MAX_OTHERS, PathId, RightOfWay, Way};
+use crate::observation::{Observation, Sight, Vehicle};
+use crate::real::Real;
 use actuation::Inherited;
 use choice::{allowed, most, nearest};
 use clock::{Clock, Tick};
 use core::marker::PhantomData;
-use hazard::{Hazard, Hazards, Passage};
+use door::Admitted;
+use hazard::{Hazard, Hazards, Passage, Who};
 use memory::Memory;
 use own::Own;
 use precedence::{PairMemory, Right};
@@ -275,6 +281,19 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         self.tracks.forget(number);
     }
 
+    /// Says of some paths how much of them is in sight at `now`, for the call at that time: before each of these places somebody
+    /// may be, and is expected to be in every decision to come. Where nothing is said of a path that was named before, those who
+    /// were out of sight may have come on, as far as the contract lets them. A path that is never named is in sight.
+    ///
+    /// A path of which the view may ever be limited should be named from the first call on: one that is named later is news,
+    /// and may leave the ego without a plan. Nobody out of sight is assumed to give way.
+    ///
+    /// # Errors
+    /// See [`SightError`]; nothing is changed then.
+    pub fn set_sight(&mut self, now: Instant, sights: &[Sight]) -> Result<(), SightError> {
+        self.tracks.hidden.tell(self.way, now, sights)
+    }
+
     /// The acceleration for the period that begins `now`: `proposal` (m/s²) if it is safe.
     ///
     /// To be called once a period. The same `now` again gives the same decision, an earlier one the last decision with
@@ -303,13 +322,17 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         }
         let on_time = self.memory.call(&self.contract, now);
         let mut decision = match door::ego(self.way, &self.contract, &observation.ego) {
-            Ok(ego) => {
+            Ok(Admitted { vehicle, pose }) => {
                 let recheck = !on_time || self.replaced;
                 self.replaced = false;
-                self.judge((now, tick), &ego, observation, (proposal, recheck))
+                let mut decision =
+                    self.judge((now, tick), &vehicle, observation, (proposal, recheck));
+                decision.headroom.note_pose(None, pose);
+                decision
             }
             Err(fault) => self.blind((now, tick), fault, on_time),
         };
+        decision.headroom.period = jitter_left(tick);
         if let Some(fault) = self.off_period(tick) {
             decision.fault = decision.fault.or(Some(fault));
         }
@@ -328,7 +351,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         let contract = &self.contract;
         let ego = door::ego(self.way, contract, &observation.ego).map_err(NotReady::Fault)?;
         let mut next = self.copy();
-        let (ego, _) = next.memory.note(contract, &ego, now);
+        let (ego, _) = next.memory.note(contract, &ego.vehicle, now);
         let findings = next.look((now, Tick::First), &ego, observation);
         let mut hazards = Hazards::new();
         hazards.add::<N, R>(contract, self.way, (&ego, &next.tracks), findings.closed);
@@ -370,7 +393,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         }
         let contract = &self.contract;
         let ego = door::ego(self.way, contract, &observation.ego)?;
-        let ego = Own::new(contract, &ego, -FAR);
+        let ego = Own::new(contract, &ego.vehicle, -FAR);
         let mut tracks = Tracks::<N>::new();
         let now = Instant::default();
         let findings = tracks.note::<R>(contract, self.way, now, &ego, observation);
@@ -435,12 +458,15 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         let speed = self.memory.least_speed(&self.contract, now);
         let acceleration = self.carry_on(most(&self.contract, speed, in_effect));
         let plan = self.memory.plan();
+        let mut headroom = Headroom::NONE;
+        headroom.note_fault(fault);
         Decision {
             acceleration,
             cause: Cause::Fallback(if plan.is_some() { fault } else { Fault::NoPlan }),
             margin: 0.0,
             plan,
             fault: Some(fault),
+            headroom,
             ..Decision::none(&self.contract)
         }
     }
@@ -539,12 +565,15 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         (proposal, recheck): (f32, bool),
     ) -> Decision {
         let (now, _) = when;
-        let (ego, possible) = self.memory.note(&self.contract, ego, now);
-        let (ego, deviated) = (&ego, !possible);
+        let (ego, moved) = self.memory.note(&self.contract, ego, now);
+        let (ego, deviated) = (&ego, moved.is_some_and(|rooms| !Room::hold(rooms)));
         if deviated {
             self.tracks.count_on_nothing();
         }
-        let findings = self.look(when, ego, observation);
+        let mut findings = self.look(when, ego, observation);
+        if let Some(rooms) = moved {
+            findings.headroom.note_ego(rooms);
+        }
         let mut hazards = Hazards::new();
         hazards.add::<N, R>(
             &self.contract,
@@ -572,6 +601,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
             breach,
             fault: findings.fault,
             unwatched: findings.closed.map(|closed| closed.number),
+            headroom: findings.headroom,
             ..self.decide(&scene, now, proposal)
         }
     }
@@ -597,8 +627,11 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
             .unwatched_hold::<R>(context, scene.ego, all, |hazards| hazards.iter().all(holds));
         if !(watched_hold && unwatched_hold) {
             self.void();
-        } else if all {
-            self.memory.confirmed(now);
+        } else {
+            self.tracks.hidden.holds = true;
+            if all {
+                self.memory.confirmed(now);
+            }
         }
     }
 
@@ -672,8 +705,11 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
             .iter()
             .filter(|hazard| hazard.target <= verified.passes)
         {
-            let other = self.tracks.iter_mut().nth(hazard.place.into());
-            if let (Passage::Ahead { .. }, Some(other)) = (hazard.passage, other) {
+            let (Passage::Ahead { .. }, Who::Watched { place, .. }) = (hazard.passage, hazard.who)
+            else {
+                continue;
+            };
+            if let Some(other) = self.tracks.iter_mut().nth(place.into()) {
                 other.counted |= 1 << hazard.zone;
             }
         }
@@ -687,6 +723,31 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         };
         self.memory.shorten(R::tail);
         allowed(&contract.ego, most, next(contract, plan))
+    }
+}
+
+/// What a call leaves of the jitter (s), if there was one before it.
+fn jitter_left(tick: Tick) -> Option<Room> {
+    match tick {
+        Tick::Next { left, .. } => {
+            let [left, most] = left.map(|micros| micros as f32 * 1.0e-6);
+            Some(Room::of(left, most))
+        }
+        _ => None,
+    }
+}
+
+/// Why the ego does not pass somebody out of sight on `path`, whom it would have passed after `clears` (s).
+fn hidden_reason(contract: &Contract, path: PathId, passage: Passage, clears: f32) -> Reason {
+    let (distance, speed) = match passage {
+        Passage::Before { distance, speed } => (distance, speed),
+        Passage::Ahead { gap, speed, .. } => (gap, speed),
+        Passage::Walks { .. } | Passage::Never => (0.0, 0.0),
+    };
+    Reason::Hidden {
+        path: u8::try_from(path.index()).unwrap_or(u8::MAX),
+        arrives: margin::arrival(contract, distance, speed),
+        clears,
     }
 }
 
@@ -724,7 +785,11 @@ fn right(way: Way<'_>, path: PathId) -> Option<Right> {
 /// Whether in every lane that the ego shares, sensed positions tell who is ahead.
 fn tells_apart(contract: &Contract, way: Way<'_>) -> Result<(), EnterError> {
     let length = |path| way.path(path).map_or(0.0, |path| path.footprint().length);
-    for (path, conflict) in way.conflicts().take(way.paths()) {
+    let driven = |&(path, _): &(PathId, _)| {
+        let path = way.path(path);
+        path.is_some_and(|path| path.class() != Class::Pedestrian)
+    };
+    for (path, conflict) in way.conflicts().filter(driven) {
         let touching = length(way.ego()) + length(path);
         for zone in conflict.zones().filter(|zone| zone.is_lane()) {
             let band = zone.lead.to - zone.lead.from;
@@ -766,7 +831,7 @@ impl Scene<'_> {
         let departure = R::departure(contract, self.ego.speed, self.inherited, go);
         let rest = R::rest(contract, departure.braking, 0.0);
         let outside = |passage| match passage {
-            Passage::Before { distance, .. } => distance > 0.0,
+            Passage::Before { distance, .. } | Passage::Walks { distance, .. } => distance > 0.0,
             // It comes from behind.
             Passage::Ahead { gap, .. } => gap > 0.0,
             Passage::Never => false,
@@ -791,11 +856,14 @@ impl Scene<'_> {
             needs,
         };
         for hazard in self.hazards.iter() {
-            let other = hazard.other;
             if R::stops_short(contract, hazard.rest, needs) >= 0.0 {
                 continue;
             }
             let (clears, ego_speed) = margin::clearing(contract, departure.least, hazard.target);
+            let other = match hazard.who {
+                Who::Watched { number, .. } | Who::Unwatched(number) => number,
+                Who::Hidden(_) => 0,
+            };
             stop = Reason::Stop {
                 other,
                 available: hazard.rest,
@@ -804,6 +872,9 @@ impl Scene<'_> {
             if passage_margin::<R>(contract, hazard, clears, ego_speed) >= 0.0 {
                 needs = R::rest(contract, departure.most, clears);
                 continue;
+            }
+            if let Who::Hidden(path) = hazard.who {
+                return hidden_reason(contract, path, hazard.passage, clears);
             }
             return match hazard.passage {
                 Passage::Before { distance, speed } => Reason::Arrival {
@@ -819,6 +890,11 @@ impl Scene<'_> {
                         needs: R::safe_gap(contract, rush.speed, ego_speed),
                     }
                 }
+                Passage::Walks { distance, speed } => Reason::Arrival {
+                    other,
+                    arrives: Real::max(distance, 0.0) / speed,
+                    clears,
+                },
                 Passage::Never => stop,
             };
         }

@@ -2,17 +2,20 @@
 
 use super::bounds::Bounds;
 use super::contract::Contract;
-use super::door;
+use super::door::{self, Admitted};
 use super::hazard::{self, Hazard};
+use super::hidden::Hidden;
 use super::own::Own;
 use super::precedence::{PairMemory, ZoneSet, has};
 use super::rules::Rules;
-use super::unwatched::{Closed, Entry, Place, Unwatched, take, unplaced};
+use super::unwatched::{Closed, Entry, Place, Unwatched, sooner, take, unplaced};
 use super::waiting::{RestState, Sighting};
+use super::walkers::Walkers;
 use crate::fault::Fault;
+use crate::headroom::{Headroom, Room};
 use crate::instant::Instant;
-use crate::junction::zone::{FAR, MAX_ZONES, Zone};
-use crate::junction::{PathId, Way};
+use crate::junction::zone::{FAR, MAX_ZONES, Span, Zone};
+use crate::junction::{Class, PathId, Way};
 use crate::observation::{Candidate, Observation, Track, Vehicle};
 use heapless::Vec;
 
@@ -46,12 +49,15 @@ pub(crate) struct Other {
     pub(crate) claims: ZoneSet,
 }
 
-/// What is new of another in the present observation. Whatever it is, the remembered plan has not been verified against it.
+/// What is new of another in the present observation. The remembered plan has not been verified against one that appeared, is
+/// watched from now on or broke the contract.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum News {
     None,
     /// It was not there before.
     Appeared,
+    /// It was out of sight, where the remembered plan counted on it.
+    Emerged,
     /// It was there, and nobody watched it.
     Watched,
     /// It moved beyond the contract's bounds.
@@ -66,6 +72,17 @@ pub(crate) struct Findings {
     pub(crate) fault: Option<Fault>,
     /// Zones that nobody watches.
     pub(crate) closed: Option<Closed>,
+    pub(crate) headroom: Headroom,
+}
+
+impl Findings {
+    /// Track `number` moved to where so much is left of its place and speed.
+    pub(super) fn moved(&mut self, number: u16, rooms: [Room; 2]) {
+        self.headroom.note_track(number, rooms);
+        if !Room::hold(rooms) {
+            self.breach = self.breach.or(Some(number));
+        }
+    }
 }
 
 /// The others that matter, at most `N`.
@@ -73,6 +90,8 @@ pub(crate) struct Findings {
 pub(crate) struct Tracks<const N: usize> {
     watched: Vec<Other, N>,
     unwatched: Unwatched,
+    pub(crate) hidden: Hidden,
+    pub(super) walkers: Walkers,
 }
 
 impl<const N: usize> Tracks<N> {
@@ -80,6 +99,8 @@ impl<const N: usize> Tracks<N> {
         Self {
             watched: Vec::new(),
             unwatched: Unwatched::new(),
+            hidden: Hidden::new(),
+            walkers: Walkers::new(),
         }
     }
 
@@ -96,10 +117,13 @@ impl<const N: usize> Tracks<N> {
     pub(crate) fn forget(&mut self, number: u16) {
         self.watched.retain(|other| other.number != number);
         self.unwatched.retain(|entry| entry.number != number);
+        self.walkers.forget(number);
     }
 
     /// Until `now` everybody kept to `contract`, from now on to another one.
     pub(crate) fn rebase<R: Rules>(&mut self, contract: &Contract, now: Instant) {
+        self.hidden.rebase::<R>(contract);
+        self.walkers.rebase();
         for other in &mut self.watched {
             (other.base, other.at) = (other.bounds, now);
         }
@@ -112,6 +136,7 @@ impl<const N: usize> Tracks<N> {
 
     /// There is no plan, or not the motion, on which the lanes that the ego enters ahead of somebody counted.
     pub(crate) fn count_on_nothing(&mut self) {
+        self.hidden.holds = false;
         self.watched.iter_mut().for_each(|other| other.counted = 0);
         self.unwatched
             .iter_mut()
@@ -120,6 +145,8 @@ impl<const N: usize> Tracks<N> {
 
     /// Where everybody may be at `now`, if nothing is seen.
     pub(crate) fn coast<R: Rules>(&mut self, contract: &Contract, now: Instant) {
+        self.hidden.advance(now);
+        self.walkers.advance(now);
         for other in &mut self.watched {
             other.seen = false;
             let least = other.bounds.s.from;
@@ -150,15 +177,21 @@ impl<const N: usize> Tracks<N> {
         self.coast::<R>(contract, now);
         // Who is known comes first, so that a newcomer finds as much room as there is.
         for newcomers in [false, true] {
-            for track in seen.tracks {
+            for track in seen.tracks.iter().filter(|track| drives(track)) {
                 self.note_track::<R>((contract, way), (now, ego), track, newcomers, &mut findings);
             }
+        }
+        for track in seen.tracks.iter().filter(|track| !drives(track)) {
+            (self.walkers).note((contract, way), ego, track, &mut findings);
         }
         for other in &mut self.watched {
             let ahead = other.entry::<R>(way, ego.least, 0.0);
             other.gone |= ahead.is_none();
         }
-        findings.closed = self.unwatched.end(way, ego.least);
+        self.hidden.look::<R>(contract);
+        if let Some(closed) = self.unwatched.end(way, ego.least) {
+            findings.closed = sooner(findings.closed, closed);
+        }
         findings
     }
 
@@ -212,6 +245,11 @@ impl<const N: usize> Tracks<N> {
         let (number, path) = (track.number, candidate.path);
         let known = |other: &&mut Other| other.number == number && other.path == path;
         let checked = door::track(way, contract, track, candidate);
+        match checked {
+            Ok(Admitted { pose, .. }) => findings.headroom.note_pose(Some(number), pose),
+            Err(fault) => findings.headroom.note_fault(fault),
+        }
+        let checked = checked.map(|admitted| admitted.vehicle);
         match (self.watched.iter_mut().find(known), checked) {
             // Two vehicles of one number on one path: there is no place to watch the second one.
             (Some(other), _) if other.seen => {
@@ -235,6 +273,8 @@ impl<const N: usize> Tracks<N> {
                 let mut other = Other::new(contract, number, path, &vehicle, now);
                 if let Some(entry) = self.unwatched.placed(number, path) {
                     other.follow::<R>(contract, &vehicle, entry, findings);
+                } else if let Some(source) = self.hidden.source::<R>(contract, path, &vehicle) {
+                    other.emerge(source, self.hidden.holds);
                 }
                 if let Some(conflict) = way.conflict(path) {
                     hazard::settle::<R>(contract, conflict.zones(), ego, &mut other);
@@ -363,12 +403,18 @@ impl<const N: usize> Tracks<N> {
         self.unwatched.iter_mut().all(|entry| entry.holds) && beyond.is_none_or(stays_out)
     }
 
-    /// A new plan stays out of everything that is closed.
+    /// A new plan stays out of everything that is closed, and is safe from everybody out of sight.
     pub(crate) fn unwatched_avoided(&mut self) {
+        self.hidden.holds = true;
         self.unwatched
             .iter_mut()
             .for_each(|entry| entry.holds = true);
     }
+}
+
+/// Whether it keeps to one direction.
+fn drives(track: &Track) -> bool {
+    track.class != Class::Pedestrian
 }
 
 /// The hazards of somebody who is seen and not watched.
@@ -410,7 +456,7 @@ impl Other {
     }
 
     /// One that appears, sensed at `speed` (m/s).
-    fn at(number: u16, path: PathId, speed: f32, bounds: Bounds, now: Instant) -> Self {
+    pub(super) fn at(number: u16, path: PathId, speed: f32, bounds: Bounds, now: Instant) -> Self {
         Self {
             number,
             path,
@@ -438,6 +484,24 @@ impl Other {
         }
     }
 
+    /// Notes that it comes from where nobody could see it, from `source`; and whether the plan in force is safe from whoever
+    /// was there.
+    fn emerge(&mut self, source: Bounds, holds: bool) {
+        let lower = |span: &mut Span, most: f32| {
+            if span.from <= most && most < span.to {
+                span.to = most;
+            }
+        };
+        lower(&mut self.bounds.s, source.s.to);
+        lower(&mut self.bounds.speed, source.speed.to);
+        self.base = self.bounds;
+        if holds {
+            self.news = News::Emerged;
+            // It enters no lane ahead of it without the gap.
+            self.counted = ZoneSet::MAX;
+        }
+    }
+
     /// Notes what was known of it while nobody watched it.
     fn follow<R: Rules>(
         &mut self,
@@ -450,18 +514,19 @@ impl Other {
             return;
         };
         let bounds = R::coast(contract, base, self.at.seconds_since(at));
-        if bounds.allow(contract, vehicle.s, vehicle.speed) {
+        let rooms = bounds.rooms(contract, vehicle.s, vehicle.speed);
+        let possible = Room::hold(rooms);
+        // Else it is another one, by the number of one that has left.
+        if possible || entry.from < FAR {
             self.news = News::Watched;
+            findings.moved(self.number, rooms);
+        }
+        if possible {
             self.settled = settled;
             // A plan in force that is safe from it enters no lane ahead of it without the gap.
             self.counted = if entry.holds { ZoneSet::MAX } else { 0 };
-            return;
-        }
-        entry.holds = false;
-        // Another one, by the number of one that has left.
-        if entry.from < FAR {
-            self.news = News::Watched;
-            findings.breach = findings.breach.or(Some(self.number));
+        } else {
+            entry.holds = false;
         }
     }
 
@@ -476,7 +541,11 @@ impl Other {
         let (s, speed) = (vehicle.s, vehicle.speed);
         let seen = Bounds::sensed(contract, s, speed);
         let least = self.bounds.s.from;
-        let possible = self.bounds.allow(contract, s, speed);
+        let rooms = self.bounds.rooms(contract, s, speed);
+        let possible = Room::hold(rooms);
+        if possible || !self.gone {
+            findings.moved(self.number, rooms);
+        }
         (self.speed, self.base, self.at) = (speed, seen, now);
         self.bounds = seen;
         self.seen = true;
@@ -497,7 +566,6 @@ impl Other {
             // Perhaps it is another one: nothing is known of who came first.
             self.pair = PairMemory::default();
             self.pair.forget();
-            findings.breach = findings.breach.or(Some(self.number));
         }
     }
 

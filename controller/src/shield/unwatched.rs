@@ -178,7 +178,7 @@ impl Unwatched {
 }
 
 /// The one of which the zones begin first.
-fn sooner(first: Option<Closed>, other: Closed) -> Option<Closed> {
+pub(super) fn sooner(first: Option<Closed>, other: Closed) -> Option<Closed> {
     first
         .filter(|first| first.from <= other.from)
         .or(Some(other))

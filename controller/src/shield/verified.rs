@@ -107,6 +107,9 @@ pub(crate) fn passage_margin<R: Rules>(
             let enters = margin::enters_ahead(contract, gap, rush, needed);
             Real::min(enters, margin::clears_before(contract, arrives, rush))
         }
+        Passage::Walks { distance, speed } => {
+            margin::walks_clear(contract, distance, speed, clears)
+        }
         Passage::Never => -FAR,
     }
 }

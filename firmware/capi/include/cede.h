@@ -31,7 +31,12 @@
 /**
  * Words of eight bytes of a cede_approach.
  */
-#define CEDE_APPROACH_WORDS 328
+#define CEDE_APPROACH_WORDS 392
+
+/**
+ * Most paths of which a part is out of sight, in one approach.
+ */
+#define CEDE_MAX_SIGHTS 8
 
 /**
  * Braking in m/s^2 that is commanded when the approach cannot be used: nothing is known of its contract then.
@@ -79,9 +84,14 @@
 #define CEDE_MAX_ZONES 3
 
 /**
+ * Most speed limits of a path.
+ */
+#define CEDE_MAX_LIMITS 4
+
+/**
  * Words of eight bytes of a cede_junction.
  */
-#define CEDE_JUNCTION_WORDS 832
+#define CEDE_JUNCTION_WORDS 856
 
 /**
  * Most tracks of an observation.
@@ -109,6 +119,11 @@
 #define CEDE_CLASS_BICYCLE 2
 
 /**
+ * Somebody on foot on a crossing, who may turn back at any time.
+ */
+#define CEDE_CLASS_PEDESTRIAN 3
+
+/**
  * Words of eight bytes of a cede_policy.
  */
 #define CEDE_POLICY_WORDS 28
@@ -117,7 +132,7 @@
  * The version of this interface. A program compares it with cede_abi_version() once, at its start: it grows with every
  * change of a structure, a size, a number or the meaning of a function.
  */
-#define CEDE_ABI_VERSION 3
+#define CEDE_ABI_VERSION 4
 
 /**
  * Alignment of all objects in bytes.
@@ -269,6 +284,22 @@ enum cede_status
      */
     CEDE_STATUS_JUNCTION_BUILT = 62,
     /**
+     * A speed limit is not in (0, 100] m/s, or not on its path.
+     */
+    CEDE_STATUS_JUNCTION_SPEED_LIMIT = 63,
+    /**
+     * More than CEDE_MAX_LIMITS speed limits of a path.
+     */
+    CEDE_STATUS_JUNCTION_TOO_MANY_LIMITS = 64,
+    /**
+     * The lateral acceleration is not in (0, 20] m/s^2.
+     */
+    CEDE_STATUS_JUNCTION_LATERAL = 65,
+    /**
+     * The highest speed of pedestrians is not in (0, 10] m/s.
+     */
+    CEDE_STATUS_JUNCTION_PACE = 66,
+    /**
      * The junction has no such path to enter by.
      */
     CEDE_STATUS_ENTER_PATH = 70,
@@ -276,6 +307,18 @@ enum cede_status
      * The contract's position_error is too large for a lane that the ego shares with another path.
      */
     CEDE_STATUS_ENTER_POSITION_ERROR = 71,
+    /**
+     * The place from which a path is in sight is not on it.
+     */
+    CEDE_STATUS_SIGHT_FROM = 72,
+    /**
+     * The speed of those who are out of sight is not in (0, 100] m/s.
+     */
+    CEDE_STATUS_SIGHT_SPEED = 73,
+    /**
+     * More than CEDE_MAX_SIGHTS paths that are partly out of sight.
+     */
+    CEDE_STATUS_TOO_MANY_SIGHTS = 74,
     /**
      * The ego's state cannot be trusted: control cannot be handed over.
      */
@@ -466,6 +509,10 @@ enum cede_reason_kind
      */
     CEDE_REASON_KIND_STOP = 3,
     /**
+     * The ego could not clear the zone before somebody arrives who may be out of sight; s from now.
+     */
+    CEDE_REASON_KIND_HIDDEN = 4,
+    /**
      * What this version has no number for.
      */
     CEDE_REASON_KIND_OTHER = 255,
@@ -610,6 +657,59 @@ enum cede_field
 typedef enum cede_field cede_field;
 #else
 typedef uint8_t cede_field;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * A condition of the contract that is monitored.
+ */
+enum cede_condition
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint8_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    /**
+     * None.
+     */
+    CEDE_CONDITION_NONE = 0,
+    /**
+     * The ego's arc length, in m: how far it is inside of what its commands lead to.
+     */
+    CEDE_CONDITION_EGO_POSITION = 1,
+    /**
+     * The ego's speed, in m/s: the same.
+     */
+    CEDE_CONDITION_EGO_SPEED = 2,
+    /**
+     * A track's arc length, in m: how far it is inside of what the contract allows since it was seen last.
+     */
+    CEDE_CONDITION_OTHER_POSITION = 3,
+    /**
+     * A track's speed, in m/s: the same.
+     */
+    CEDE_CONDITION_OTHER_SPEED = 4,
+    /**
+     * The distance (m) between a pose and its place on the path.
+     */
+    CEDE_CONDITION_OFFSET = 5,
+    /**
+     * The cosine of the angle between a direction and the path.
+     */
+    CEDE_CONDITION_HEADING = 6,
+    /**
+     * The time (s) since the last call, against period and jitter.
+     */
+    CEDE_CONDITION_PERIOD = 7,
+    /**
+     * What this version has no number for.
+     */
+    CEDE_CONDITION_OTHER = 255,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum cede_condition cede_condition;
+#else
+typedef uint8_t cede_condition;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
@@ -943,7 +1043,7 @@ typedef struct cede_reason {
      */
     uint8_t reserved;
     /**
-     * Number of the track.
+     * Number of the track; with CEDE_REASON_KIND_HIDDEN, of the path that is out of sight.
      */
     uint16_t other;
     /**
@@ -1021,6 +1121,75 @@ typedef struct cede_prediction {
 } cede_prediction;
 
 /**
+ * What is left of a tolerance.
+ */
+typedef struct cede_room {
+    /**
+     * What is left, in the condition's unit; below 0 the condition is broken.
+     */
+    float left;
+    /**
+     * The same as a share of the most that can be left: 1 in the middle of what is allowed, 0 at its end.
+     */
+    float share;
+    /**
+     * Number of the track that has least left.
+     */
+    uint16_t track;
+    /**
+     * 1 if there was something to compare.
+     */
+    uint8_t is_known;
+    /**
+     * 1 if it is a track's.
+     */
+    uint8_t has_track;
+} cede_room;
+
+/**
+ * How near each monitored condition of the contract is to its limit. A breach is a position or a speed of which less than 0
+ * is left.
+ */
+typedef struct cede_headroom {
+    /**
+     * CEDE_CONDITION_EGO_POSITION.
+     */
+    struct cede_room ego_position;
+    /**
+     * CEDE_CONDITION_EGO_SPEED.
+     */
+    struct cede_room ego_speed;
+    /**
+     * CEDE_CONDITION_OTHER_POSITION.
+     */
+    struct cede_room other_position;
+    /**
+     * CEDE_CONDITION_OTHER_SPEED.
+     */
+    struct cede_room other_speed;
+    /**
+     * CEDE_CONDITION_OFFSET.
+     */
+    struct cede_room offset;
+    /**
+     * CEDE_CONDITION_HEADING.
+     */
+    struct cede_room heading;
+    /**
+     * CEDE_CONDITION_PERIOD.
+     */
+    struct cede_room period;
+    /**
+     * The condition of which the smallest share is left.
+     */
+    cede_condition least;
+    /**
+     * 0.
+     */
+    uint8_t reserved[3];
+} cede_headroom;
+
+/**
  * The ego's acceleration for the period that begins, and why it is what it is.
  */
 typedef struct cede_decision {
@@ -1084,6 +1253,10 @@ typedef struct cede_decision {
      * What the policy thinks of the other that restricts the ego most.
      */
     struct cede_prediction prediction;
+    /**
+     * How near each monitored condition of the contract is to its limit.
+     */
+    struct cede_headroom headroom;
 } cede_decision;
 
 /**
@@ -1280,6 +1453,29 @@ typedef struct cede_traffic {
      */
     uint8_t reserved[2];
 } cede_traffic;
+
+/**
+ * How much of a path the sensors see at one moment.
+ */
+typedef struct cede_sight {
+    /**
+     * Arc length in m from which they see the path: whoever has its centre there or beyond, towards the path's end, is
+     * certainly among the tracks. Before it somebody may be.
+     */
+    float from;
+    /**
+     * Nobody out of sight is faster than this (m/s), in (0, 100], nor than other_max_speed.
+     */
+    float speed;
+    /**
+     * The path.
+     */
+    uint8_t path;
+    /**
+     * Ignored.
+     */
+    uint8_t reserved[3];
+} cede_sight;
 
 /**
  * The largest footprint of the vehicles on a path, centred on the reference point.
@@ -1503,6 +1699,18 @@ cede_status cede_approach_set_contract(struct cede_approach *approach,
 cede_status cede_approach_set_traffic(struct cede_approach *approach, const struct cede_traffic *traffic);
 
 /**
+ * Says of `count` paths how much of them is in sight at `now_us`, for cede_approach_decide() or cede_approach_ready() at that
+ * time: before each of these places somebody may be, and is expected to be in every decision to come. Where nothing is said
+ * of a path that was named before, those who were out of sight may have come on. Name a path whose view may ever be limited
+ * from the first decision on. Sights that are refused change nothing.
+ */
+cede_status cede_approach_set_sight(struct cede_approach *approach,
+                                    uint64_t now_us,
+                                    const struct cede_sight *sights,
+                                    uint32_t count,
+                                    struct cede_detail *detail);
+
+/**
  * Says that the track with this number is known not to be there any more.
  */
 cede_status cede_approach_forget(struct cede_approach *approach, uint16_t number);
@@ -1543,6 +1751,23 @@ cede_status cede_junction_init(struct cede_junction *junction);
  * it is set. cede_junction_build() checks it.
  */
 cede_status cede_junction_set_tolerance(struct cede_junction *junction, float tolerance);
+
+/**
+ * Sets the lateral acceleration (m/s^2), at most, that the ego is to have in bends, in (0, 20]; bends do not slow it down
+ * unless it is set. It bounds proposals; plans know nothing of it. cede_junction_build() checks it.
+ */
+cede_status cede_junction_set_lateral(struct cede_junction *junction,
+                                      float lateral);
+
+/**
+ * Says that an ego on a path drives at `speed` (m/s) or slower from arc length `from` (m) on, until the next limit; up to
+ * CEDE_MAX_LIMITS of them, in any order. It bounds proposals; plans know nothing of it.
+ */
+cede_status cede_junction_add_speed_limit(struct cede_junction *junction,
+                                          uint8_t path,
+                                          float from,
+                                          float speed,
+                                          struct cede_detail *detail);
 
 /**
  * Adds a path through `count` points, for vehicles of a class with this largest footprint, and writes its number. The
@@ -1603,6 +1828,15 @@ cede_status cede_junction_set_control(struct cede_junction *junction,
                                       uint8_t path,
                                       uint8_t control,
                                       struct cede_detail *detail);
+
+/**
+ * Sets the highest speed (m/s) of pedestrians on a path, either way, in (0, 10]; 3 unless it is set. Of other classes it says
+ * nothing.
+ */
+cede_status cede_junction_set_pace(struct cede_junction *junction,
+                                   uint8_t path,
+                                   float pace,
+                                   struct cede_detail *detail);
 
 /**
  * Builds the junction: works out how each two paths meet. Nothing can be added afterwards. A junction that is refused can
@@ -1714,6 +1948,11 @@ const char *cede_field_text(uint8_t field);
  * What a cede_breach says.
  */
 const char *cede_breach_text(uint8_t breach);
+
+/**
+ * What a cede_condition says.
+ */
+const char *cede_condition_text(uint8_t condition);
 
 /**
  * The name of a cede_contract_field, as in "ego.braking".

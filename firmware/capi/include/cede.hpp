@@ -73,6 +73,10 @@ public:
         return call(cede_junction_set_priority, get(), first, second, priority);
     }
     result set_control(uint8_t path, cede_control control) { return call(cede_junction_set_control, get(), path, control); }
+    result add_speed_limit(uint8_t path, float from, float speed) {
+        return call(cede_junction_add_speed_limit, get(), path, from, speed);
+    }
+    result set_pace(uint8_t path, float pace) { return call(cede_junction_set_pace, get(), path, pace); }
     result build() { return call(cede_junction_build, get()); }
 };
 
@@ -80,6 +84,9 @@ class approach : public object<cede_approach> {
 public:
     result enter(const drive &drive, const junction &junction, uint8_t path) {
         return call(cede_approach_enter, get(), drive.get(), junction.get(), path);
+    }
+    result set_sight(uint64_t now_us, const cede_sight *sights, uint32_t count) {
+        return call(cede_approach_set_sight, get(), now_us, sights, count);
     }
     [[nodiscard]] cede_status ready(uint64_t now_us, const cede_observation &seen, cede_readiness *readiness = nullptr) const {
         return cede_approach_ready(get(), now_us, &seen, readiness);

@@ -4,18 +4,24 @@ use crate::contract::{cede_contract, checked_contract};
 use crate::decision::{cede_decision, cede_fault, cede_reason};
 use crate::detail::{cede_detail, told};
 use crate::drive::cede_drive;
-use crate::junction::cede_junction;
-use crate::memory::{Plain, checked, offer, read, write};
+use crate::junction::{CEDE_MAX_PATHS, cede_junction};
+use crate::memory::{Plain, checked, offer, read, slice, write};
 use crate::object::{Storage, change, lend, seal_of, store};
 use crate::observation::{Seen, cede_observation};
 use crate::policy::cede_policy;
 use crate::status::cede_status;
 use cede_controller::{
-    Approach, Crosser, EnterError, Instant, Leader, NotReady, PathId, TrafficContext,
+    Approach, Crosser, EnterError, Instant, Leader, MAX_SIGHTS, NotReady, PathId, Sight,
+    SightError, TrafficContext, Vehicle,
 };
 
 /// Words of eight bytes of a cede_approach.
-pub const CEDE_APPROACH_WORDS: usize = 328;
+pub const CEDE_APPROACH_WORDS: usize = 392;
+
+/// Most paths of which a part is out of sight, in one approach.
+pub const CEDE_MAX_SIGHTS: usize = 8;
+
+const _: () = assert!(CEDE_MAX_SIGHTS == MAX_SIGHTS);
 
 /// One vehicle on its way through one junction: plan, precedence and tracks. The next junction begins with a new one. It
 /// refers to its junction and to its policy's weights.
@@ -62,6 +68,24 @@ pub struct cede_traffic {
 
 // SAFETY: numbers.
 unsafe impl Plain for cede_traffic {}
+
+/// How much of a path the sensors see at one moment.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct cede_sight {
+    /// Arc length in m from which they see the path: whoever has its centre there or beyond, towards the path's end, is
+    /// certainly among the tracks. Before it somebody may be.
+    pub from: f32,
+    /// Nobody out of sight is faster than this (m/s), in (0, 100], nor than other_max_speed.
+    pub speed: f32,
+    /// The path.
+    pub path: u8,
+    /// Ignored.
+    pub reserved: [u8; 3],
+}
+
+// SAFETY: numbers.
+unsafe impl Plain for cede_sight {}
 
 /// Whether control can be handed over.
 #[repr(C)]
@@ -336,6 +360,42 @@ pub unsafe extern "C" fn cede_approach_set_traffic(
     .into()
 }
 
+/// Says of `count` paths how much of them is in sight at `now_us`, for cede_approach_decide() or cede_approach_ready() at that
+/// time: before each of these places somebody may be, and is expected to be in every decision to come. Where nothing is said
+/// of a path that was named before, those who were out of sight may have come on. Name a path whose view may ever be limited
+/// from the first decision on. Sights that are refused change nothing.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cede_approach_set_sight(
+    approach: *mut cede_approach,
+    now_us: u64,
+    sights: *const cede_sight,
+    count: u32,
+    detail: *mut cede_detail,
+) -> cede_status {
+    // SAFETY: the header's contract of pointers.
+    unsafe { told(see(approach, now_us, sights, count), detail) }
+}
+
+unsafe fn see(
+    approach: *mut cede_approach,
+    now_us: u64,
+    sights: *const cede_sight,
+    count: u32,
+) -> Result<(), cede_detail> {
+    // SAFETY: by the header's contract of pointers.
+    unsafe {
+        let mut told = heapless::Vec::<Sight, CEDE_MAX_PATHS>::new();
+        for sight in slice(sights, count)? {
+            let path = PathId::new(sight.path);
+            let (from, speed) = (sight.from, sight.speed);
+            let room = told.push(Sight { path, from, speed });
+            room.map_err(|_| cede_status::TooManySights)?;
+        }
+        let now = Instant::from_micros(now_us);
+        Ok(with(approach, |approach| approach.set_sight(now, &told))??)
+    }
+}
+
 /// Says that the track with this number is known not to be there any more.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cede_approach_forget(
@@ -400,6 +460,31 @@ impl From<EnterError> for cede_detail {
                 contract_field: crate::contract::cede_contract_field::PositionError,
                 ..Self::new(cede_status::EnterPositionError)
             },
+            _ => cede_status::Other.into(),
+        }
+    }
+}
+
+impl From<SightError> for cede_detail {
+    fn from(error: SightError) -> Self {
+        let about = |status, path: PathId, value, high| Self {
+            path: u8::try_from(path.index()).unwrap_or(u8::MAX),
+            value,
+            high,
+            ..Self::new(status)
+        };
+        match error {
+            SightError::Path { path } => about(cede_status::JunctionUnknownPath, path, 0.0, 0.0),
+            SightError::From {
+                path,
+                value,
+                length,
+            } => about(cede_status::SightFrom, path, value, length),
+            SightError::Speed { path, value } => Self {
+                excludes_low: 1,
+                ..about(cede_status::SightSpeed, path, value, Vehicle::MAX_SPEED)
+            },
+            SightError::TooMany => cede_status::TooManySights.into(),
             _ => cede_status::Other.into(),
         }
     }

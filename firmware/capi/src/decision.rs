@@ -1,8 +1,8 @@
 //! What the controller decides, and why, as numbers.
 
 use cede_controller::{
-    Action, Breach, Cause, Contract, Decision, Fault, Field, InputFault, Prediction, Reason,
-    Subject,
+    Action, Breach, Cause, Condition, Contract, Decision, Fault, Field, Headroom, InputFault,
+    Prediction, Reason, Room, Subject,
 };
 use core::ffi::CStr;
 
@@ -53,6 +53,8 @@ pub enum cede_reason_kind {
     Entry = 2,
     /// The ego could not stop short of the other's zone, or behind the other in its lane; m.
     Stop = 3,
+    /// The ego could not clear the zone before somebody arrives who may be out of sight; s from now.
+    Hidden = 4,
     /// What this version has no number for.
     Other = 255,
 }
@@ -65,7 +67,7 @@ pub struct cede_reason {
     pub kind: cede_reason_kind,
     /// 0.
     pub reserved: u8,
-    /// Number of the track.
+    /// Number of the track; with CEDE_REASON_KIND_HIDDEN, of the path that is out of sight.
     pub other: u16,
     /// What there is: seconds to the other's arrival, metres of the gap, metres to where the ego must be at rest.
     pub available: f32,
@@ -185,6 +187,71 @@ pub struct cede_prediction {
     pub acceleration: f32,
 }
 
+/// A condition of the contract that is monitored.
+#[repr(u8)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum cede_condition {
+    /// None.
+    None = 0,
+    /// The ego's arc length, in m: how far it is inside of what its commands lead to.
+    EgoPosition = 1,
+    /// The ego's speed, in m/s: the same.
+    EgoSpeed = 2,
+    /// A track's arc length, in m: how far it is inside of what the contract allows since it was seen last.
+    OtherPosition = 3,
+    /// A track's speed, in m/s: the same.
+    OtherSpeed = 4,
+    /// The distance (m) between a pose and its place on the path.
+    Offset = 5,
+    /// The cosine of the angle between a direction and the path.
+    Heading = 6,
+    /// The time (s) since the last call, against period and jitter.
+    Period = 7,
+    /// What this version has no number for.
+    Other = 255,
+}
+
+/// What is left of a tolerance.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct cede_room {
+    /// What is left, in the condition's unit; below 0 the condition is broken.
+    pub left: f32,
+    /// The same as a share of the most that can be left: 1 in the middle of what is allowed, 0 at its end.
+    pub share: f32,
+    /// Number of the track that has least left.
+    pub track: u16,
+    /// 1 if there was something to compare.
+    pub is_known: u8,
+    /// 1 if it is a track's.
+    pub has_track: u8,
+}
+
+/// How near each monitored condition of the contract is to its limit. A breach is a position or a speed of which less than 0
+/// is left.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct cede_headroom {
+    /// CEDE_CONDITION_EGO_POSITION.
+    pub ego_position: cede_room,
+    /// CEDE_CONDITION_EGO_SPEED.
+    pub ego_speed: cede_room,
+    /// CEDE_CONDITION_OTHER_POSITION.
+    pub other_position: cede_room,
+    /// CEDE_CONDITION_OTHER_SPEED.
+    pub other_speed: cede_room,
+    /// CEDE_CONDITION_OFFSET.
+    pub offset: cede_room,
+    /// CEDE_CONDITION_HEADING.
+    pub heading: cede_room,
+    /// CEDE_CONDITION_PERIOD.
+    pub period: cede_room,
+    /// The condition of which the smallest share is left.
+    pub least: cede_condition,
+    /// 0.
+    pub reserved: [u8; 3],
+}
+
 /// The ego's acceleration for the period that begins, and why it is what it is.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -219,6 +286,8 @@ pub struct cede_decision {
     pub fault: cede_fault,
     /// What the policy thinks of the other that restricts the ego most.
     pub prediction: cede_prediction,
+    /// How near each monitored condition of the contract is to its limit.
+    pub headroom: cede_headroom,
 }
 
 impl cede_reason {
@@ -246,6 +315,11 @@ impl From<Reason> for cede_reason {
                 available,
                 needs,
             } => (Kind::Stop, other, available, needs),
+            Reason::Hidden {
+                path,
+                arrives,
+                clears,
+            } => (Kind::Hidden, path.into(), arrives, clears),
             _ => (Kind::Other, 0, 0.0, 0.0),
         };
         Self {
@@ -328,6 +402,72 @@ fn field(field: Field) -> cede_field {
     }
 }
 
+impl cede_room {
+    const NONE: Self = Self {
+        left: 0.0,
+        share: 0.0,
+        track: 0,
+        is_known: 0,
+        has_track: 0,
+    };
+}
+
+impl From<Option<Room>> for cede_room {
+    fn from(room: Option<Room>) -> Self {
+        room.map_or(Self::NONE, |room| Self {
+            left: room.left,
+            share: room.share,
+            track: room.track.unwrap_or(0),
+            is_known: 1,
+            has_track: room.track.is_some().into(),
+        })
+    }
+}
+
+impl cede_headroom {
+    const NONE: Self = Self {
+        ego_position: cede_room::NONE,
+        ego_speed: cede_room::NONE,
+        other_position: cede_room::NONE,
+        other_speed: cede_room::NONE,
+        offset: cede_room::NONE,
+        heading: cede_room::NONE,
+        period: cede_room::NONE,
+        least: cede_condition::None,
+        reserved: [0; 3],
+    };
+}
+
+impl From<&Headroom> for cede_headroom {
+    fn from(headroom: &Headroom) -> Self {
+        let least = headroom.least();
+        Self {
+            ego_position: headroom.ego_position.into(),
+            ego_speed: headroom.ego_speed.into(),
+            other_position: headroom.other_position.into(),
+            other_speed: headroom.other_speed.into(),
+            offset: headroom.offset.into(),
+            heading: headroom.heading.into(),
+            period: headroom.period.into(),
+            least: least.map_or(cede_condition::None, |(condition, _)| of(condition)),
+            reserved: [0; 3],
+        }
+    }
+}
+
+fn of(condition: Condition) -> cede_condition {
+    match condition {
+        Condition::EgoPosition => cede_condition::EgoPosition,
+        Condition::EgoSpeed => cede_condition::EgoSpeed,
+        Condition::OtherPosition => cede_condition::OtherPosition,
+        Condition::OtherSpeed => cede_condition::OtherSpeed,
+        Condition::Offset => cede_condition::Offset,
+        Condition::Heading => cede_condition::Heading,
+        Condition::Period => cede_condition::Period,
+        _ => cede_condition::Other,
+    }
+}
+
 impl cede_prediction {
     const NONE: Self = Self {
         other: 0,
@@ -366,6 +506,7 @@ impl cede_decision {
         fallback: cede_fault::NONE,
         fault: cede_fault::NONE,
         prediction: cede_prediction::NONE,
+        headroom: cede_headroom::NONE,
     };
 
     fn caused(self, cause: Cause) -> Self {
@@ -419,6 +560,7 @@ impl From<&Decision> for cede_decision {
             prediction: decision
                 .prediction
                 .map_or(cede_prediction::NONE, Into::into),
+            headroom: (&decision.headroom).into(),
             ..Self::NONE
         }
         .caused(decision.cause)
@@ -457,6 +599,10 @@ pub(crate) const REASON: &[(u8, &CStr)] = &[
         c"the gap to the other on entry is too small",
     ),
     (cede_reason_kind::Stop as u8, c"too near to stop"),
+    (
+        cede_reason_kind::Hidden as u8,
+        c"somebody out of sight may arrive before the zone is clear",
+    ),
     (cede_reason_kind::Other as u8, c"other"),
 ];
 
@@ -506,6 +652,33 @@ pub(crate) const FIELD: &[(u8, &CStr)] = &[
     (cede_field::Path as u8, c"path of this class"),
     (cede_field::Number as u8, c"number that is there twice"),
     (cede_field::Other as u8, c"other"),
+];
+
+pub(crate) const CONDITION: &[(u8, &CStr)] = &[
+    (cede_condition::None as u8, c"none"),
+    (
+        cede_condition::EgoPosition as u8,
+        c"the ego's arc length (m)",
+    ),
+    (cede_condition::EgoSpeed as u8, c"the ego's speed (m/s)"),
+    (
+        cede_condition::OtherPosition as u8,
+        c"a track's arc length (m)",
+    ),
+    (cede_condition::OtherSpeed as u8, c"a track's speed (m/s)"),
+    (
+        cede_condition::Offset as u8,
+        c"distance (m) of a pose from its place on the path",
+    ),
+    (
+        cede_condition::Heading as u8,
+        c"cosine of the angle to the path",
+    ),
+    (
+        cede_condition::Period as u8,
+        c"time (s) since the last call",
+    ),
+    (cede_condition::Other as u8, c"other"),
 ];
 
 pub(crate) const BREACH: &[(u8, &CStr)] = &[

@@ -4,8 +4,8 @@ use crate::detail::{cede_detail, told};
 use crate::memory::{Plain, checked, read, slice, write};
 use crate::object::{Storage, change, lend, make};
 use crate::observation::{
-    CEDE_CLASS_BICYCLE, CEDE_CLASS_CAR, CEDE_CLASS_LORRY, cede_point, cede_pose, class,
-    class_number, point, pose,
+    CEDE_CLASS_BICYCLE, CEDE_CLASS_CAR, CEDE_CLASS_LORRY, CEDE_CLASS_PEDESTRIAN, cede_point,
+    cede_pose, class, class_number, point, pose,
 };
 use crate::status::cede_status;
 use cede_controller::{
@@ -26,10 +26,14 @@ pub const CEDE_MAX_ROUTE_POINTS: usize = 64;
 /// Most zones of two paths.
 pub const CEDE_MAX_ZONES: usize = 3;
 
+/// Most speed limits of a path.
+pub const CEDE_MAX_LIMITS: usize = 4;
+
 const _: () = assert!(CEDE_MAX_ZONES == cede_controller::junction::zone::MAX_ZONES);
+const _: () = assert!(CEDE_MAX_LIMITS == cede_controller::junction::MAX_LIMITS);
 
 /// Words of eight bytes of a cede_junction.
-pub const CEDE_JUNCTION_WORDS: usize = 832;
+pub const CEDE_JUNCTION_WORDS: usize = 856;
 
 /// A junction: its paths, and how each two of them meet. Once built it does not change; it stays where it is for as long
 /// as an approach through it is used.
@@ -236,6 +240,36 @@ pub unsafe extern "C" fn cede_junction_set_tolerance(
     unsafe { told(build_up(junction, set), core::ptr::null_mut()) }
 }
 
+/// Sets the lateral acceleration (m/s^2), at most, that the ego is to have in bends, in (0, 20]; bends do not slow it down
+/// unless it is set. It bounds proposals; plans know nothing of it. cede_junction_build() checks it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cede_junction_set_lateral(
+    junction: *mut cede_junction,
+    lateral: f32,
+) -> cede_status {
+    let set = |builder: &mut Builder| {
+        builder.lateral(lateral);
+        Ok(())
+    };
+    // SAFETY: the header's contract of pointers.
+    unsafe { told(build_up(junction, set), core::ptr::null_mut()) }
+}
+
+/// Says that an ego on a path drives at `speed` (m/s) or slower from arc length `from` (m) on, until the next limit; up to
+/// CEDE_MAX_LIMITS of them, in any order. It bounds proposals; plans know nothing of it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cede_junction_add_speed_limit(
+    junction: *mut cede_junction,
+    path: u8,
+    from: f32,
+    speed: f32,
+    detail: *mut cede_detail,
+) -> cede_status {
+    let set = |builder: &mut Builder| builder.speed_limit(PathId::new(path), from, speed);
+    // SAFETY: the header's contract of pointers.
+    unsafe { told(build_up(junction, set), detail) }
+}
+
 /// Adds a path through `count` points, for vehicles of a class with this largest footprint, and writes its number. The
 /// first CEDE_MAX_ENTRIES paths are those that the ego can enter by.
 #[unsafe(no_mangle)]
@@ -381,6 +415,20 @@ pub unsafe extern "C" fn cede_junction_set_control(
     let result = control_of(control).map_err(cede_detail::from);
     // SAFETY: the header's contract of pointers.
     unsafe { told(result.and_then(set), detail) }
+}
+
+/// Sets the highest speed (m/s) of pedestrians on a path, either way, in (0, 10]; 3 unless it is set. Of other classes it says
+/// nothing.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cede_junction_set_pace(
+    junction: *mut cede_junction,
+    path: u8,
+    pace: f32,
+    detail: *mut cede_detail,
+) -> cede_status {
+    let set = |builder: &mut Builder| builder.pace(PathId::new(path), pace);
+    // SAFETY: the header's contract of pointers.
+    unsafe { told(build_up(junction, set), detail) }
 }
 
 /// Builds the junction: works out how each two paths meet. Nothing can be added afterwards. A junction that is refused can
@@ -701,6 +749,41 @@ impl From<JunctionError> for cede_detail {
                 value,
                 length,
             } => about(cede_status::JunctionLine, path, value, length),
+            Error::SpeedLimit {
+                path,
+                from,
+                speed,
+                length,
+            } => {
+                let high = cede_controller::junction::MAX_SPEED_LIMIT;
+                if speed > 0.0 && speed <= high {
+                    about(cede_status::JunctionSpeedLimit, path, from, length)
+                } else {
+                    Self {
+                        excludes_low: 1,
+                        ..about(cede_status::JunctionSpeedLimit, path, speed, high)
+                    }
+                }
+            }
+            Error::TooManyLimits { path } => {
+                let capacity = CEDE_MAX_LIMITS as f32;
+                about(cede_status::JunctionTooManyLimits, path, 0.0, capacity)
+            }
+            Error::Pace { path, value } => Self {
+                excludes_low: 1,
+                ..about(
+                    cede_status::JunctionPace,
+                    path,
+                    value,
+                    cede_controller::junction::MAX_PACE,
+                )
+            },
+            Error::Lateral { value } => Self {
+                value,
+                high: cede_controller::junction::MAX_LATERAL,
+                excludes_low: 1,
+                ..Self::new(cede_status::JunctionLateral)
+            },
             Error::RightOfWay { path } => about(cede_status::JunctionRightOfWay, path, 0.0, 0.0),
             _ => cede_status::Other.into(),
         }
@@ -738,4 +821,5 @@ pub(crate) const CLASS: &[(u8, &CStr)] = &[
     (CEDE_CLASS_CAR, c"car"),
     (CEDE_CLASS_LORRY, c"lorry"),
     (CEDE_CLASS_BICYCLE, c"bicycle"),
+    (CEDE_CLASS_PEDESTRIAN, c"pedestrian"),
 ];

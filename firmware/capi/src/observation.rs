@@ -19,6 +19,8 @@ pub const CEDE_CLASS_CAR: u8 = 0;
 pub const CEDE_CLASS_LORRY: u8 = 1;
 /// A bicycle or a motorcycle.
 pub const CEDE_CLASS_BICYCLE: u8 = 2;
+/// Somebody on foot on a crossing, who may turn back at any time.
+pub const CEDE_CLASS_PEDESTRIAN: u8 = 3;
 
 /// A point in m, in any fixed frame of the plane: x east, y north.
 #[repr(C)]
@@ -206,6 +208,7 @@ pub(crate) fn class(number: u8) -> Result<Class, cede_status> {
         CEDE_CLASS_CAR => Ok(Class::Car),
         CEDE_CLASS_LORRY => Ok(Class::Lorry),
         CEDE_CLASS_BICYCLE => Ok(Class::Bicycle),
+        CEDE_CLASS_PEDESTRIAN => Ok(Class::Pedestrian),
         _ => Err(cede_status::UnknownChoice),
     }
 }
@@ -215,6 +218,7 @@ pub(crate) fn class_number(class: Class) -> u8 {
         Class::Car => CEDE_CLASS_CAR,
         Class::Lorry => CEDE_CLASS_LORRY,
         Class::Bicycle => CEDE_CLASS_BICYCLE,
+        Class::Pedestrian => CEDE_CLASS_PEDESTRIAN,
         _ => u8::MAX,
     }
 }

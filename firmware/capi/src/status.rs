@@ -80,11 +80,25 @@ pub enum cede_status {
     JunctionNotBuilt = 61,
     /// The junction is built: nothing can be added.
     JunctionBuilt = 62,
+    /// A speed limit is not in (0, 100] m/s, or not on its path.
+    JunctionSpeedLimit = 63,
+    /// More than CEDE_MAX_LIMITS speed limits of a path.
+    JunctionTooManyLimits = 64,
+    /// The lateral acceleration is not in (0, 20] m/s^2.
+    JunctionLateral = 65,
+    /// The highest speed of pedestrians is not in (0, 10] m/s.
+    JunctionPace = 66,
 
     /// The junction has no such path to enter by.
     EnterPath = 70,
     /// The contract's position_error is too large for a lane that the ego shares with another path.
     EnterPositionError = 71,
+    /// The place from which a path is in sight is not on it.
+    SightFrom = 72,
+    /// The speed of those who are out of sight is not in (0, 100] m/s.
+    SightSpeed = 73,
+    /// More than CEDE_MAX_SIGHTS paths that are partly out of sight.
+    TooManySights = 74,
 
     /// The ego's state cannot be trusted: control cannot be handed over.
     NotReadyFault = 80,
@@ -225,12 +239,40 @@ pub(crate) const STATUS: &[(i32, &CStr)] = &[
         c"the junction is built: nothing can be added",
     ),
     (
+        cede_status::JunctionSpeedLimit as i32,
+        c"a speed limit out of its range, or not on its path",
+    ),
+    (
+        cede_status::JunctionTooManyLimits as i32,
+        c"more speed limits than a path has room for",
+    ),
+    (
+        cede_status::JunctionLateral as i32,
+        c"the lateral acceleration is out of its range",
+    ),
+    (
+        cede_status::JunctionPace as i32,
+        c"the highest speed of pedestrians is out of its range",
+    ),
+    (
         cede_status::EnterPath as i32,
         c"the junction has no such path to enter by",
     ),
     (
         cede_status::EnterPositionError as i32,
         c"position_error is too large for a lane that the ego shares",
+    ),
+    (
+        cede_status::SightFrom as i32,
+        c"a path is in sight from a place that is not on it",
+    ),
+    (
+        cede_status::SightSpeed as i32,
+        c"the speed of those out of sight is out of its range",
+    ),
+    (
+        cede_status::TooManySights as i32,
+        c"more paths partly out of sight than there is room for",
     ),
     (
         cede_status::NotReadyFault as i32,

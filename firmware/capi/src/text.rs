@@ -1,7 +1,7 @@
 //! Numbers as text, for a log or a diagnostic tool. Texts are constants; they may change between versions, numbers do not.
 
 use crate::contract::CONTRACT_FIELD;
-use crate::decision::{ACTION, BREACH, CAUSE, FAULT, FIELD, REASON, SUBJECT};
+use crate::decision::{ACTION, BREACH, CAUSE, CONDITION, FAULT, FIELD, REASON, SUBJECT};
 use crate::junction::{CLASS, CONFLICT, CONTROL, PRIORITY, RIGHT};
 use crate::status::STATUS;
 use core::ffi::{CStr, c_char};
@@ -57,6 +57,12 @@ pub extern "C" fn cede_field_text(field: u8) -> *const c_char {
 #[unsafe(no_mangle)]
 pub extern "C" fn cede_breach_text(breach: u8) -> *const c_char {
     text(BREACH, breach)
+}
+
+/// What a cede_condition says.
+#[unsafe(no_mangle)]
+pub extern "C" fn cede_condition_text(condition: u8) -> *const c_char {
+    text(CONDITION, condition)
 }
 
 /// The name of a cede_contract_field, as in "ego.braking".

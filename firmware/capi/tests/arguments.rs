@@ -128,13 +128,20 @@ proptest! {
     }
 
     #[test]
-    fn any_traffic(bytes in bytes::<cede_traffic>(), number in any::<u16>()) {
+    fn any_traffic(
+        bytes in bytes::<cede_traffic>(),
+        number in any::<u16>(),
+        sights in prop::collection::vec(bytes::<cede_sight>(), 0..15),
+    ) {
+        let sights: Vec<cede_sight> = sights.iter().map(|bytes| of(bytes)).collect();
         let contract = worst_case();
         let mut world = World::new(&contract);
         // SAFETY: as the header says.
         unsafe {
             prop_assert_eq!(cede_approach_set_traffic(&mut world.approach, &of(&bytes)), OK);
             prop_assert_eq!(cede_approach_forget(&mut world.approach, number), OK);
+            let (first, count) = (sights.as_ptr(), sights.len() as u32);
+            cede_approach_set_sight(&mut world.approach, 1_000_000, first, count, null_mut());
         }
         let (status, decision) = world.decide(1_000_000, &seen(&[track()]));
         prop_assert_eq!(status, OK);
@@ -167,6 +174,9 @@ proptest! {
             prop_assert_eq!(known == cede_status::UnknownChoice, priority > cede_priority::Signed as u8);
             let known = cede_junction_set_control(junction, of_path % 3, control, none);
             prop_assert_eq!(known == cede_status::UnknownChoice, control > cede_control::AllWayStop as u8);
+            cede_junction_add_speed_limit(junction, of_path % 3, line, s, none);
+            cede_junction_set_pace(junction, of_path % 3, s, none);
+            cede_junction_set_lateral(junction, s);
             cede_junction_set_tolerance(junction, tolerance);
             cede_junction_build(junction, none);
             let mut pose = cede_pose::default();
@@ -195,7 +205,7 @@ proptest! {
         let mut texts = vec![cede_status_text(number)];
         for text in [
             cede_cause_text, cede_action_text, cede_reason_text, cede_fault_text, cede_subject_text, cede_field_text,
-            cede_breach_text, cede_contract_field_text, cede_conflict_text, cede_right_text, cede_priority_text,
+            cede_breach_text, cede_condition_text, cede_contract_field_text, cede_conflict_text, cede_right_text, cede_priority_text,
             cede_control_text, cede_class_text,
         ] {
             texts.push(text(byte));

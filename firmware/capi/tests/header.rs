@@ -32,7 +32,7 @@ fn the_header_is_up_to_date() {
 #[test]
 fn every_number_has_a_text() {
     type Text = extern "C" fn(u8) -> *const std::ffi::c_char;
-    let texts: [(&str, Text); 12] = [
+    let texts: [(&str, Text); 13] = [
         ("CEDE_CAUSE_", cede::cede_cause_text),
         ("CEDE_ACTION_", cede::cede_action_text),
         ("CEDE_REASON_KIND_", cede::cede_reason_text),
@@ -40,6 +40,7 @@ fn every_number_has_a_text() {
         ("CEDE_SUBJECT_", cede::cede_subject_text),
         ("CEDE_FIELD_", cede::cede_field_text),
         ("CEDE_BREACH_", cede::cede_breach_text),
+        ("CEDE_CONDITION_", cede::cede_condition_text),
         ("CEDE_CONTRACT_FIELD_", cede::cede_contract_field_text),
         ("CEDE_CONFLICT_KIND_", cede::cede_conflict_text),
         ("CEDE_RIGHT_", cede::cede_right_text),

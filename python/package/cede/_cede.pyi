@@ -137,7 +137,7 @@ class Track:
         path: int,
         vehicle: Vehicle,
         *,
-        kind: Literal["car", "lorry", "bicycle"] = "car",
+        kind: Literal["car", "lorry", "bicycle", "pedestrian"] = "car",
         or_on: Sequence[tuple[int, float]] = ...,
     ) -> Track: ...
     @property
@@ -152,25 +152,29 @@ class Track:
 class JunctionBuilder:
     """Collects what a junction is built from. A call that raises changes nothing."""
 
-    def __new__(cls, tolerance: float = 0.1) -> JunctionBuilder: ...
+    def __new__(cls, tolerance: float = 0.1, lateral: float | None = None) -> JunctionBuilder: ...
     def path(
         self,
         points: ArrayLike,
         *,
-        kind: Literal["car", "lorry", "bicycle"] = "car",
+        kind: Literal["car", "lorry", "bicycle", "pedestrian"] = "car",
         length: float = 5.0,
         width: float = 2.0,
         line: float | None = None,
         control: Literal["unknown", "free", "yield", "stop", "all-way-stop"] = "unknown",
+        limits: Sequence[tuple[float, float]] = ...,
+        pace: float | None = None,
     ) -> int:
         """Add a path along `points`, shape (n, 2), in metres; its number is returned.
 
         `line` (m) is where a vehicle waits: it passes it only with a plan through the junction.
+        `limits` are speed limits of the ego: from where on (m), and how fast (m/s).
+        `pace` (m/s) is the most speed of pedestrians on it, who may turn back.
         """
     def variant(
         self,
         of: int,
-        kind: Literal["car", "lorry", "bicycle"],
+        kind: Literal["car", "lorry", "bicycle", "pedestrian"],
         length: float,
         width: float,
         line: float | None = None,
@@ -194,8 +198,8 @@ class Junction:
     """A junction: its paths, and how each two of them meet. Prepared once for all vehicles."""
 
     @staticmethod
-    def builder(tolerance: float = 0.1) -> JunctionBuilder:
-        """A builder without paths."""
+    def builder(tolerance: float = 0.1, lateral: float | None = None) -> JunctionBuilder:
+        """A builder without paths. `lateral` (m/s²) is what the ego is to have at most in bends."""
     def __len__(self) -> int: ...
     @property
     def tolerance(self) -> float: ...
@@ -204,6 +208,12 @@ class Junction:
     def length(self, path: int) -> float: ...
     def line(self, path: int) -> float:
         """Arc length (m) of the footprint's centre while a vehicle waits at its line."""
+    def allowed_speed(self, path: int, s: float) -> float:
+        """The speed (m/s) that limits and bends allow an ego there; infinite without them."""
+    def allowed_acceleration(
+        self, path: int, s: float, speed: float, response: float = 0.1
+    ) -> float:
+        """The largest acceleration (m/s²) with which an ego keeps to limits and bends ahead."""
     def vehicle(self, path: int, s: float, speed: float) -> Vehicle:
         """A vehicle on `path` at arc length `s` (m), exactly on it."""
     def project(self, path: int, x: float, y: float) -> float:
@@ -272,6 +282,12 @@ class Approach:
         """Drive with `policy` from the next decision on."""
     def set_contract(self, contract: Contract) -> None:
         """Drive within `contract` from the next decision on."""
+    def set_sight(self, now: float, sights: Sequence[tuple[int, float, float]]) -> None:
+        """Say how much of some paths is in sight at `now` (s), for the decision at that time.
+
+        Each is a path, the arc length (m) from which it is in sight, and the most speed (m/s) of
+        those before it. Name a path whose view may ever be limited from the first decision on.
+        """
     def forget(self, number: int) -> None:
         """Say that the track with this number is known not to be there any more."""
 
@@ -288,6 +304,12 @@ class Shield:
         """Metres to spare of the best plan before control is handed over; raises without one."""
     @property
     def plan(self) -> int | None: ...
+    def set_sight(self, now: float, sights: Sequence[tuple[int, float, float]]) -> None:
+        """Say how much of some paths is in sight at `now` (s), for the decision at that time.
+
+        Each is a path, the arc length (m) from which it is in sight, and the most speed (m/s) of
+        those before it. Name a path whose view may ever be limited from the first decision on.
+        """
     def forget(self, number: int) -> None: ...
 
 @final
@@ -324,17 +346,41 @@ class Decision:
     def unwatched(self) -> int | None:
         """A track that matters and for which there is no room."""
     @property
+    def headroom(self) -> dict[str, Room]:
+        """How near each monitored condition of the contract is to its limit.
+
+        `ego-position` (m), `ego-speed` (m/s), `other-position` (m), `other-speed` (m/s),
+        `offset` (m), `heading` (a cosine), `period` (s); those that were compared.
+        """
+    @property
     def prediction(self) -> Prediction | None:
         """What the policy thinks of the other that restricts the ego most."""
+
+@final
+class Room:
+    """What is left of a tolerance before a condition of the contract is broken."""
+
+    @property
+    def left(self) -> float:
+        """In the condition's unit; below 0 it is broken."""
+    @property
+    def share(self) -> float:
+        """Of the most that can be left: 1 in the middle of what is allowed, 0 at its end."""
+    @property
+    def track(self) -> int | None:
+        """The track that has least left; `None` is the ego or the call."""
 
 @final
 class Reason:
     """Why a proposal is refused."""
 
     @property
-    def kind(self) -> Literal["arrival", "entry", "stop"]: ...
+    def kind(self) -> Literal["arrival", "entry", "stop", "hidden"]: ...
     @property
     def other(self) -> int | None: ...
+    @property
+    def path(self) -> int | None:
+        """The path on which somebody may be out of sight."""
     @property
     def numbers(self) -> dict[str, float]:
         """`arrives` and `clears` (s), `gap` and `needs` (m), or `available` and `needs` (m)."""

@@ -60,6 +60,7 @@ pub mod actuator;
 pub mod audit;
 pub mod body;
 pub mod campaign;
+pub mod corner;
 pub mod error;
 pub mod hidden;
 pub mod human;

@@ -1,6 +1,7 @@
 //! A driver behind the shield that is attacked: the only place that calls it.
 
 use crate::body::Body;
+use crate::corner::{Corner, View};
 use crate::hidden::fits;
 use crate::look::Look;
 use crate::motion::TICK;
@@ -13,7 +14,7 @@ use crate::setup::Setup;
 use crate::sight::Sight;
 use crate::site::Leg;
 use cede_controller::dangerous::Rules;
-use cede_controller::{Decision, EnterError, Instant, Observation, Plan, Shield};
+use cede_controller::{Decision, EnterError, Instant, Observation, Plan, Shield, SightError};
 
 /// Others that a shield watches.
 pub const ROOM: usize = 8;
@@ -32,6 +33,7 @@ pub struct Pilot<'s, R: Rules> {
     junction: usize,
     driver: proposer::Driver,
     sights: Vec<Sight>,
+    corners: Vec<Corner>,
     /// A plan has been verified, in this junction.
     pub verified: bool,
     /// The guarantee holds: for ever since then, or where the contract is broken, while there is a plan.
@@ -66,12 +68,23 @@ impl<'s, R: Rules + Clone> Pilot<'s, R> {
             .map(|number| Sight::new(&setup.sensing, number, &mut rng))
             .collect();
         sights[me].hidden = false;
+        let corners = if setup.sensing.view == View::Whole {
+            Vec::new()
+        } else {
+            Corner::all(setup, &bodies[me], leg.junction, &mut rng)
+        };
+        let fastest = f64::from(setup.contract.other().max_speed);
+        for (sight, body) in sights.iter_mut().zip(bodies) {
+            // Nobody who is faster than the contract says is out of sight.
+            sight.hidden |= body.state.v <= fastest && behind(&corners, body);
+        }
         Ok(Self {
             me,
             shield: enter(setup, leg)?,
             junction: leg.junction,
             driver,
             sights,
+            corners,
             verified: false,
             guarded: false,
             flagged: false,
@@ -94,10 +107,10 @@ impl<'s, R: Rules + Clone> Pilot<'s, R> {
         self.sights[other].number
     }
 
-    /// Whether it has ever seen vehicle `other`.
+    /// Whether it has ever seen vehicle `other`, or has to expect it.
     #[must_use]
-    pub fn sees(&self, other: usize) -> bool {
-        !self.sights[other].hidden
+    pub fn expects(&self, other: usize) -> bool {
+        !self.sights[other].hidden || !self.corners.is_empty()
     }
 
     fn now(&self, tick: u64) -> Instant {
@@ -105,12 +118,37 @@ impl<'s, R: Rules + Clone> Pilot<'s, R> {
     }
 
     fn look(&mut self, setup: &Setup<'s>, bodies: &[Body]) -> Option<Look> {
+        self.pass_corners(bodies);
         let me = (self.me, self.junction, !self.verified);
         let look = Look::new(setup, bodies, me, &mut self.sights, &mut self.rng)?;
         if setup.sensing.frozen == 0 {
             return Some(look);
         }
         Some(self.frozen(setup.sensing.frozen, look))
+    }
+
+    /// Whoever comes out from behind a corner is seen from then on.
+    fn pass_corners(&mut self, bodies: &[Body]) {
+        if self.corners.is_empty() {
+            return;
+        }
+        for corner in &mut self.corners {
+            corner.pass(&mut self.rng);
+        }
+        for (sight, body) in self.sights.iter_mut().zip(bodies) {
+            sight.hidden &= behind(&self.corners, body);
+        }
+    }
+
+    /// Tells the shield what is in sight.
+    fn tell(&mut self, setup: &Setup<'s>, now: Instant) -> Result<(), SightError> {
+        if setup.sensing.view == View::Untold {
+            return Ok(());
+        }
+        let speed = setup.contract.other().max_speed;
+        let corners = self.corners.iter().map(|corner| corner.sight(speed));
+        let sights: Vec<_> = corners.collect();
+        self.shield.set_sight(now, &sights)
     }
 
     /// Outside of the contract: an old look instead of a new one.
@@ -132,8 +170,9 @@ impl<'s, R: Rules + Clone> Pilot<'s, R> {
     pub fn ready(&mut self, setup: &Setup<'s>, bodies: &[Body], tick: u64) -> bool {
         let now = self.now(tick);
         self.look(setup, bodies).is_some_and(|look| {
+            let told = self.tell(setup, now);
             let ready = self.shield.ready(now, &look.observation());
-            !look.faulty && ready.is_ok()
+            !look.faulty && told.is_ok() && ready.is_ok()
         })
     }
 
@@ -153,8 +192,13 @@ impl<'s, R: Rules + Clone> Pilot<'s, R> {
         let proposal = self.driver.propose(numbers, bodies[self.me].state.v);
         let mut look = self.look(setup, bodies)?;
         let now = self.now(tick);
+        if let Err(refused) = self.tell(setup, now) {
+            outcome.faults += 1;
+            outcome.complain(tick, || format!("vehicle {}: {refused}", self.me));
+        }
         // Those for whom a plan without them leaves no room have been seen before it was made.
-        while !setup.sensing.surprises && self.sights.iter().any(|sight| sight.hidden) {
+        let announced = !setup.sensing.surprises && setup.sensing.view == View::Whole;
+        while announced && self.sights.iter().any(|sight| sight.hidden) {
             let mut unawares = self.shield.clone();
             let decision = unawares.filter(now, &look.observation(), proposal);
             if !self.reveals(setup, numbers, bodies, &decision) {
@@ -277,11 +321,20 @@ impl<'s, R: Rules + Clone> Pilot<'s, R> {
             ahead.shield = shield;
             ahead.junction += 1;
             ahead.verified = false;
+            if !ahead.corners.is_empty() {
+                ahead.corners.clear();
+                ahead.sights.iter_mut().for_each(|it| it.hidden = false);
+            }
             if ahead.ready(setup, bodies, tick) {
                 *self = ahead;
             }
         }
     }
+}
+
+/// Whether a vehicle is out of sight.
+fn behind(corners: &[Corner], body: &Body) -> bool {
+    corners.iter().any(|corner| corner.hides(body))
 }
 
 fn enter<'s, R: Rules>(setup: &Setup<'s>, leg: Leg) -> Result<Shield<'s, ROOM, R>, EnterError> {

@@ -1,5 +1,6 @@
 //! What one vehicle senses of the others: errors, gaps, numbers and the order of tracks.
 
+use crate::corner::View;
 use crate::error::{ErrorSource, Shape};
 use crate::rng::Rng;
 use cede_controller::PathId;
@@ -28,6 +29,8 @@ pub struct Sensing {
     pub newcomers: bool,
     /// Others come into sight wherever they are: beyond the contract. A plan that is reported after that has to hold.
     pub surprises: bool,
+    /// How much is in sight of the others' lanes. Whoever comes into sight is in every observation from then on.
+    pub view: View,
     /// The observation is frozen for so many periods now and then: outside of the contract.
     pub frozen: u32,
 }
@@ -45,6 +48,7 @@ impl Sensing {
         undecided: false,
         newcomers: false,
         surprises: false,
+        view: View::Whole,
         frozen: 0,
     };
 }

@@ -341,7 +341,7 @@ impl<'s, R: Rules + Clone> World<'s, R> {
                 continue;
             }
             for j in (0..self.minds.len()).filter(|&j| j != i && !self.bodies[j].gone) {
-                if matches!(&self.minds[i], Mind::Shielded(pilot) if !pilot.sees(j)) {
+                if matches!(&self.minds[i], Mind::Shielded(pilot) if !pilot.expects(j)) {
                     continue;
                 }
                 let pair = [i, j].map(|k| self.bodies[k].seen(self.setup.site));

@@ -10,7 +10,7 @@ type Change = fn(&mut Vehicle, f32);
 fn refused(change: impl Fn(&mut Vehicle)) -> [Option<InputFault>; 2] {
     let site = crossing();
     let way = site.way(EGO).unwrap();
-    let input = |result: Result<Vehicle, Fault>| match result {
+    let input = |result: Result<Admitted, Fault>| match result {
         Err(Fault::Input(input)) => Some(input),
         _ => None,
     };
@@ -78,7 +78,7 @@ fn rolling_back_counts_as_rest() {
     let site = crossing();
     let way = site.way(EGO).unwrap();
     let own = super::super::door::ego(way, &WORST, &ego(&site, [20.0, -0.1]));
-    assert_eq!(own.unwrap().speed, 0.0);
+    assert_eq!(own.unwrap().vehicle.speed, 0.0);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use super::cast::{Cast, Manners, Start};
 use super::terms::Terms;
+use crate::corner::View;
 use crate::rng::Rng;
 use crate::sight::Sensing;
 use crate::sketch::{self, Users, Way};
@@ -70,6 +71,12 @@ const STOP: Family = Family {
     ordered: true,
     seconds: 40.0,
     ..ALL
+};
+
+/// Somebody may come out from behind corners.
+const CORNERS: Sensing = Sensing {
+    view: View::Corners,
+    ..Sensing::PLAIN
 };
 
 /// All of them.
@@ -253,6 +260,30 @@ pub const FAMILIES: &[Family] = &[
         ..ONE
     },
     Family {
+        name: "occluded",
+        about: "others come out from behind corners, which move",
+        ways: |rng| match rng.below(3) {
+            0 => sketch::merge(4, Users::Mixed, rng),
+            1 => sketch::crossroads(6, Users::Cars, rng),
+            _ => sketch::star(5, Users::Mixed, rng),
+        },
+        sensing: |_| CORNERS,
+        cast: |rng| Cast::one(1 + rng.below(6)),
+        ..ONE
+    },
+    Family {
+        name: "occluded-drivetrain",
+        about: "the same with several commands in flight, lag, gain and disturbance",
+        ways: |rng| match rng.below(2) {
+            0 => sketch::merge(4, Users::Mixed, rng),
+            _ => sketch::star(5, Users::Mixed, rng),
+        },
+        terms: |rng| Terms::usual(rng).perhaps_blurred(rng).driven(rng),
+        sensing: |_| CORNERS,
+        cast: |rng| Cast::one(1 + rng.below(5)),
+        ..ONE
+    },
+    Family {
         name: "undecided",
         about: "nobody knows where the others turn until they do",
         ways: |rng| sketch::crossroads(9, Users::Cars, rng),
@@ -355,6 +386,16 @@ pub const FAMILIES: &[Family] = &[
             bursts: rng.pick(&[0.0, 0.01]),
             ..Sensing::PLAIN
         },
+        cast: |rng| Cast {
+            start: rng.pick(&[Start::Rest, Start::Far]),
+            ..Cast::all(2 + rng.below(3))
+        },
+        ..STOP
+    },
+    Family {
+        name: "stop-occluded",
+        about: "vehicles that see each other late",
+        sensing: |_| CORNERS,
         cast: |rng| Cast {
             start: rng.pick(&[Start::Rest, Start::Far]),
             ..Cast::all(2 + rng.below(3))

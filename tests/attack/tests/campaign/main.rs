@@ -1,8 +1,10 @@
 //! A short campaign: every family, the broken rules, and the same results on any number of threads.
 
 use cede_attack::campaign::Round;
+use cede_attack::corner::View;
 use cede_attack::mutants;
 use cede_attack::scenario::{FAMILIES, Family, SHARE};
+use cede_attack::sight::Sensing;
 use cede_attack::tally::Tally;
 use cede_controller::dangerous::Sound;
 
@@ -27,6 +29,18 @@ fn the_shield_holds_in_every_family() {
         }
     }
     println!("{unplanned} steps without a plan in {FULL:?}");
+}
+
+/// A shield that is not told where its view ends is met, or loses its plan.
+#[test]
+fn whoever_comes_out_of_sight_has_to_be_expected() {
+    let mut family = *Family::named("occluded").unwrap();
+    family.sensing = |_| Sensing {
+        view: View::Untold,
+        ..Sensing::PLAIN
+    };
+    let tally = family.campaign::<Sound>(0, 4 * SHARE);
+    assert!(tally.overlaps > 0 && tally.unplanned > 0, "{tally:?}");
 }
 
 /// A shield with a broken rule is caught by an overlap, each where it is looked for first.

@@ -1,0 +1,286 @@
+//! How fast a vehicle drives along its path, by speed limits and in bends, with nobody else there.
+
+use crate::junction::path::SpeedLimit;
+use crate::junction::polyline::{Piece, Polyline};
+use crate::real::{Real, sqrt};
+
+/// Braking (m/s²) with which a vehicle comes down to a lower speed ahead.
+pub const COMFORT: f32 = 1.5;
+
+/// The speed is what is allowed after so long (s): a shorter time makes it jerk.
+const SMOOTH: f32 = 0.5;
+
+/// A bend is as sharp as a path turns over this length (m).
+const WINDOW: f32 = 4.0;
+
+/// What bounds the speed of a vehicle along its path, whoever is there.
+///
+/// A proposal is bounded by it; a plan that a shield falls back on is not.
+#[derive(Clone, Copy, Debug)]
+pub struct Profile<'j> {
+    polyline: Polyline<'j>,
+    limits: &'j [SpeedLimit],
+    lateral: f32,
+}
+
+/// A stretch of the path, and the speed that is allowed on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Stretch {
+    /// From where to where (m).
+    from: f32,
+    to: f32,
+    /// In m/s.
+    speed: f32,
+}
+
+impl<'j> Profile<'j> {
+    pub(super) const fn new(
+        polyline: Polyline<'j>,
+        limits: &'j [SpeedLimit],
+        lateral: f32,
+    ) -> Self {
+        Self {
+            polyline,
+            limits,
+            lateral,
+        }
+    }
+
+    /// The speed (m/s) that is allowed at arc length `s` (m); infinite, if nothing bounds it there.
+    ///
+    /// Cost: O(points) if bends count.
+    #[must_use]
+    pub fn speed(self, s: f32) -> f32 {
+        let here = |it: &Stretch| it.from <= s && s < it.to;
+        let stretches = self.stretches(s, s).filter(here);
+        stretches.fold(f32::INFINITY, |least, it| Real::min(least, it.speed))
+    }
+
+    /// The largest acceleration (m/s²) with which a vehicle at arc length `s` (m) with `speed` (m/s) keeps to the profile, if
+    /// a command is followed after `response` (s): it comes down to a lower speed ahead at [`COMFORT`]. Infinite, if nothing
+    /// bounds it.
+    ///
+    /// Cost: O(points) if bends count.
+    #[must_use]
+    pub fn acceleration(self, s: f32, speed: f32, response: f32) -> f32 {
+        let time = SMOOTH + response;
+        let sight = speed * speed * (0.5 / COMFORT) + 2.0 * speed * time + WINDOW;
+        let ahead = self.stretches(s, s + sight).filter(|it| s < it.to);
+        ahead.fold(f32::INFINITY, |least, it| {
+            Real::min(least, slowing(it.speed, it.from - s, speed, time))
+        })
+    }
+
+    /// Everything that bounds the speed between two arc lengths (m), and perhaps more.
+    fn stretches(self, from: f32, to: f32) -> impl Iterator<Item = Stretch> + use<'j> {
+        let ends = self.limits.iter().skip(1).map(|next| next.from);
+        let ends = ends.chain([f32::INFINITY]);
+        let limits = self.limits.iter().zip(ends).map(|(limit, to)| Stretch {
+            from: limit.from,
+            to,
+            speed: limit.speed,
+        });
+        limits.chain(self.bends(from, to))
+    }
+
+    /// The bends of which a part is between two arc lengths (m).
+    fn bends(self, from: f32, to: f32) -> impl Iterator<Item = Stretch> + use<'j> {
+        let arc = if self.lateral.is_finite() {
+            self.polyline.arc()
+        } else {
+            &[]
+        };
+        let first = arc.partition_point(|&s| s < from - 2.0 * WINDOW).max(1);
+        let last = arc.partition_point(|&s| s < to + WINDOW);
+        (first..last).filter_map(move |corner| self.bend(corner))
+    }
+
+    /// The bend that begins at point number `corner`: as much as the path turns from there on over a window.
+    fn bend(self, corner: usize) -> Option<Stretch> {
+        let piece = |i| self.polyline.piece(i);
+        let first = piece(corner.checked_sub(1)?)?;
+        let (start, mut before, mut last) = (first.to, first, piece(corner)?);
+        let mut turn = angle(&before, &last);
+        let mut next = corner + 1;
+        while let Some(after) = piece(next).filter(|after| after.from <= start + WINDOW) {
+            turn += angle(&last, &after);
+            (before, last, next) = (last, after, next + 1);
+        }
+        let (from, to) = (start - half(&first), last.from + half(&last));
+        // What is straight before and after a bend does not make it wider.
+        let inner = piece(corner)?;
+        let lead = if long(&first, &inner) {
+            0.0
+        } else {
+            start - from
+        };
+        let tail = if long(&last, &before) {
+            0.0
+        } else {
+            to - last.from
+        };
+        let curvature = turn.abs() / Real::max(lead + last.from - start + tail, WINDOW);
+        let speed = sqrt(self.lateral / curvature);
+        // Straight on, anything is allowed.
+        speed.is_finite().then_some(Stretch { from, to, speed })
+    }
+}
+
+/// Half a piece (m), or half a window.
+fn half(piece: &Piece) -> f32 {
+    0.5 * Real::min(piece.to - piece.from, WINDOW)
+}
+
+/// Whether a piece is longer than the one beside it, by more than points on a curve differ.
+fn long(piece: &Piece, beside: &Piece) -> bool {
+    piece.to - piece.from > 1.5 * (beside.to - beside.from)
+}
+
+/// The angle (rad) by which a path turns from one piece to the next; a little more, if it turns much.
+fn angle(before: &Piece, after: &Piece) -> f32 {
+    let (a, b) = (before.velocity(), after.velocity());
+    // 2 tan(θ/2). A turn is 90° at most.
+    2.0 * a.perp(&b) / (1.0 + a.dot(&b))
+}
+
+/// The acceleration (m/s²), for some `time` (s), of a vehicle at `speed` (m/s) that comes down at [`COMFORT`] to `allowed`
+/// (m/s) within `distance` (m).
+fn slowing(allowed: f32, distance: f32, speed: f32, time: f32) -> f32 {
+    // v² = allowed² + 2 · COMFORT · (distance − ½ · (speed + v) · time).
+    let lost = 0.5 * COMFORT * time;
+    let left = allowed * allowed + 2.0 * COMFORT * distance - 2.0 * lost * speed;
+    let then = sqrt(Real::max(lost * lost + left, 0.0)) - lost;
+    let after = (Real::max(then, allowed) - speed) / time;
+    if then >= allowed || speed <= allowed || distance <= 0.0 {
+        return after;
+    }
+    // It is there before the time is over.
+    let within = (allowed * allowed - speed * speed) / (2.0 * distance);
+    Real::min(after, Real::max(within, -2.0 * COMFORT))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Footprint, Point};
+    use crate::junction::{Class, Junction, JunctionError, PathId, Route};
+    use crate::kinematics::{State, advance};
+    use proptest::prelude::*;
+    use std::vec::Vec;
+
+    type Site = Junction<1, 64>;
+    const PATH: PathId = PathId::new(0);
+
+    /// 80 m straight on, a quarter of a circle to the left, and 80 m more.
+    fn bend(radius: f32, points: u8) -> Route<64> {
+        let turn = (0..=points).map(|i| {
+            let angle = core::f32::consts::FRAC_PI_2 * f32::from(i) / f32::from(points);
+            Point::new(80.0 + radius * angle.sin(), radius - radius * angle.cos())
+        });
+        let end = Point::new(80.0 + radius, radius + 80.0);
+        let points: Vec<Point> = [Point::new(0.0, 0.0)]
+            .into_iter()
+            .chain(turn)
+            .chain([end])
+            .collect();
+        Route::new(points).unwrap()
+    }
+
+    fn site(
+        route: &Route<64>,
+        limits: &[(f32, f32)],
+        lateral: Option<f32>,
+    ) -> Result<Site, JunctionError> {
+        let mut builder = Site::builder();
+        let path = builder.path(route, Class::Car, Footprint::PAPER)?;
+        for &(from, speed) in limits {
+            builder.speed_limit(path, from, speed)?;
+        }
+        if let Some(lateral) = lateral {
+            builder.lateral(lateral);
+        }
+        builder.build()
+    }
+
+    /// A drive that keeps to the profile, and would accelerate at 2 m/s²: arc lengths and speeds.
+    fn drive(site: &Site, speed: f32) -> Vec<(f32, f32)> {
+        let profile = site.way(PATH).unwrap().profile();
+        let (mut s, mut v) = (0.0, speed);
+        let mut places = Vec::new();
+        while s < 150.0 && places.len() < 3000 {
+            places.push((s, v));
+            let acceleration = profile.acceleration(s, v, 0.0).clamp(-3.0, 2.0);
+            State { s, v } = advance(State { s, v }, acceleration);
+        }
+        places
+    }
+
+    proptest! {
+        #[test]
+        fn limits_and_bends_are_kept_without_a_jerk(
+            radius in 5.0_f32..25.0, points in 12_u8..40, speed in 3.0_f32..8.0, first in 8.0_f32..14.0, second in 3.0_f32..14.0, at in 90.0_f32..140.0,
+        ) {
+            let site = site(&bend(radius, points), &[(0.0, first), (at, second)], Some(2.0)).unwrap();
+            let places = drive(&site, speed);
+            prop_assert!(places.len() < 3000, "it stands");
+            for window in places.windows(2) {
+                let [(s, v), (_, next)] = window else { unreachable!() };
+                let limit = if *s < at { first } else { second };
+                prop_assert!(*v <= limit + 0.05, "{v} m/s at {s} m, limit {limit}");
+                if (80.5..79.5 + radius * core::f32::consts::FRAC_PI_2).contains(s) {
+                    let lateral = v * v / radius;
+                    prop_assert!(lateral <= 2.0 * 1.05, "{lateral} m/s² at {s} m");
+                }
+                prop_assert!(next - v >= -0.1 * (COMFORT + 0.1), "{v} to {next} m/s at {s} m");
+            }
+        }
+    }
+
+    #[test]
+    fn a_bend_is_taken_about_as_fast_as_it_may() {
+        for points in [6, 12, 40] {
+            let site = site(&bend(12.0, points), &[], Some(2.0)).unwrap();
+            let middle = site.way(PATH).unwrap().profile().speed(89.0);
+            let most = (2.0_f32 * 12.0).sqrt();
+            assert!(
+                (0.9 * most..=1.001 * most).contains(&middle),
+                "{middle} m/s of {most}, {points} points"
+            );
+        }
+    }
+
+    #[test]
+    fn nothing_bounds_a_path_without_limits() {
+        let site = site(&bend(12.0, 12), &[], None).unwrap();
+        let profile = site.way(PATH).unwrap().profile();
+        assert_eq!(profile.speed(89.0), f32::INFINITY);
+        assert_eq!(profile.acceleration(60.0, 14.0, 0.1), f32::INFINITY);
+    }
+
+    #[test]
+    fn limits_out_of_range_are_named() {
+        let route = bend(12.0, 12);
+        let said = |limits: &[(f32, f32)], lateral| {
+            std::string::ToString::to_string(&site(&route, limits, lateral).unwrap_err())
+        };
+        assert!(said(&[(0.0, 0.0)], None).starts_with("path 0: a speed limit of 0 m/s from 0 m"));
+        assert!(said(&[(500.0, 5.0)], None).contains("from 500 m"));
+        assert!(said(&[(0.0, 5.0); 5], None).starts_with("path 0: more than 4 speed limits"));
+        assert!(said(&[], Some(0.0)).starts_with("a lateral acceleration of 0 m/s²"));
+    }
+
+    #[test]
+    fn limits_may_come_in_any_order() {
+        let site = site(
+            &bend(12.0, 12),
+            &[(50.0, 5.0), (0.0, 10.0), (20.0, 7.0)],
+            None,
+        )
+        .unwrap();
+        let profile = site.way(PATH).unwrap().profile();
+        assert_eq!(
+            [0.0, 19.0, 20.0, 60.0].map(|s| profile.speed(s)),
+            [10.0, 10.0, 7.0, 5.0]
+        );
+    }
+}

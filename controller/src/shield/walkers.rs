@@ -1,0 +1,201 @@
+//! Pedestrians on crossings: each may turn back at any time.
+
+use super::contract::Contract;
+use super::door;
+use super::hazard::{Hazard, Passage, Who};
+use super::own::Own;
+use super::tracks::Findings;
+use super::unwatched::{Closed, sooner, unplaced};
+use crate::headroom::Room;
+use crate::instant::Instant;
+use crate::junction::zone::{FAR, Span, Zone};
+use crate::junction::{Class, PathId, Way};
+use crate::observation::{Candidate, Track};
+use crate::real::Real;
+use heapless::Vec;
+
+/// So many pedestrians are watched one by one; the crossings of the rest are closed.
+pub(super) const MAX_WALKERS: usize = 4;
+
+/// A pedestrian.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Walker {
+    number: u16,
+    path: PathId,
+    /// Its highest speed, either way, in m/s.
+    pace: f32,
+    /// Where it was at `at`.
+    base: Span,
+    at: Instant,
+    seen: bool,
+    /// The remembered plan has not been verified against it.
+    suspect: bool,
+}
+
+/// Those who are known.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Walkers {
+    known: Vec<Walker, MAX_WALKERS>,
+    /// The present.
+    now: Instant,
+}
+
+impl Walker {
+    /// Where it may be at `now`.
+    fn span(&self, now: Instant) -> Span {
+        let gone = self.pace * now.seconds_since(self.at);
+        Span {
+            from: self.base.from - gone,
+            to: self.base.to + gone,
+        }
+    }
+
+    /// Notes that it is seen at `s` (m) with `speed` (m/s), and what is left until it cannot have come there.
+    fn meet(&mut self, contract: &Contract, (s, speed): (f32, f32), now: Instant) -> [Room; 2] {
+        let spare = contract.position_error + contract.slack;
+        let Span { from, to } = self.span(now);
+        let fastest = self.pace + contract.speed_error + contract.slack;
+        let rooms = [
+            Room::between(s, [from - spare, to + spare]),
+            Room::between(speed, [-fastest, fastest]),
+        ];
+        self.base = around(contract, s);
+        (self.at, self.seen) = (now, true);
+        self.suspect = !Room::hold(rooms);
+        rooms
+    }
+}
+
+fn around(contract: &Contract, s: f32) -> Span {
+    Span {
+        from: s - contract.position_error,
+        to: s + contract.position_error,
+    }
+}
+
+impl Walkers {
+    pub(super) const fn new() -> Self {
+        Self {
+            known: Vec::new(),
+            now: Instant::from_micros(0),
+        }
+    }
+
+    /// Nobody with this number is there any more.
+    pub(super) fn forget(&mut self, number: u16) {
+        self.known.retain(|walker| walker.number != number);
+    }
+
+    /// It is `now`, and nobody has been seen yet.
+    pub(super) fn advance(&mut self, now: Instant) {
+        self.now = now;
+        for walker in &mut self.known {
+            (walker.seen, walker.suspect) = (false, false);
+        }
+    }
+
+    /// Until the present everybody kept to one contract, from now on to another one.
+    pub(super) fn rebase(&mut self) {
+        for walker in &mut self.known {
+            (walker.base, walker.at) = (walker.span(self.now), self.now);
+        }
+    }
+
+    /// Notes a track of a pedestrian, on each of its candidates.
+    pub(super) fn note(
+        &mut self,
+        (contract, way): (&Contract, Way<'_>),
+        ego: &Own,
+        track: &Track,
+        findings: &mut Findings,
+    ) {
+        for candidate in track.candidates() {
+            self.note_candidate((contract, way), ego, (track, candidate), findings);
+        }
+    }
+
+    fn note_candidate(
+        &mut self,
+        (contract, way): (&Contract, Way<'_>),
+        ego: &Own,
+        (track, candidate): (&Track, Candidate),
+        findings: &mut Findings,
+    ) {
+        let (number, path, now) = (track.number, candidate.path, self.now);
+        let same = |it: &&mut Walker| (it.number, it.path) == (number, path) && !it.seen;
+        let known = self.known.iter_mut().find(same);
+        let mut close = || {
+            let from = unplaced(way, path, Class::Pedestrian, ego.least);
+            if let Some(from) = from {
+                findings.closed = sooner(findings.closed, Closed { number, from });
+            }
+        };
+        let admitted = match door::track(way, contract, track, candidate) {
+            Ok(admitted) => admitted,
+            Err(fault) => {
+                // One that is known coasts.
+                if known.is_none() {
+                    close();
+                }
+                findings.headroom.note_fault(fault);
+                findings.fault = findings.fault.or(Some(fault));
+                return;
+            }
+        };
+        let seen = (admitted.vehicle.s, admitted.vehicle.speed);
+        if let Some(walker) = known {
+            let rooms = walker.meet(contract, seen, now);
+            findings.headroom.note_pose(Some(number), admitted.pose);
+            findings.moved(number, rooms);
+            return;
+        }
+        let walker = Walker {
+            number,
+            path,
+            pace: way.path(path).map_or(0.0, |path| path.pace()),
+            base: around(contract, seen.0),
+            at: now,
+            seen: true,
+            suspect: true,
+        };
+        if self.known.push(walker).is_err() {
+            close();
+        }
+        findings.headroom.note_pose(Some(number), admitted.pose);
+    }
+
+    /// What they are to the ego. They come from either side of their zones, and the ego waits for all of them.
+    pub(super) fn hazards<'w>(
+        &'w self,
+        contract: &'w Contract,
+        way: Way<'w>,
+        ego: &'w Own,
+    ) -> impl Iterator<Item = Hazard> {
+        self.known.iter().flat_map(move |walker| {
+            let span = walker.span(self.now);
+            let zones = way.conflict(walker.path).map(|conflict| conflict.zones());
+            let ahead = |zone: &&Zone| ego.least < zone.ego.to;
+            (zones.into_iter().flatten().filter(ahead)).map(move |zone| {
+                let error = contract.position_error;
+                let stop = zone.ego.from - ego.s - error;
+                Hazard {
+                    who: Who::Watched {
+                        number: walker.number,
+                        place: u8::MAX,
+                    },
+                    zone: 0,
+                    suspect: walker.suspect,
+                    yields: true,
+                    target: zone.ego.to - ego.s + 3.0 * error,
+                    limit: stop,
+                    rest: stop,
+                    rest_beyond: FAR,
+                    passage: Passage::Walks {
+                        distance: Real::max(zone.other.from - span.to, span.from - zone.other.to),
+                        speed: walker.pace,
+                    },
+                }
+            })
+        })
+    }
+}
