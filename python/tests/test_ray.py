@@ -16,6 +16,9 @@ from ray.cluster_utils import Cluster
 
 import cede.ray
 
+# The workers do not have this file.
+ray.cloudpickle.register_pickle_by_value(sys.modules[__name__])
+
 
 @pytest.fixture(scope="module")
 def cluster():
@@ -70,10 +73,11 @@ def test_a_lost_machine_costs_nothing_but_time(cluster, tmp_path):
             time.sleep(0.05)
         cluster.remove_node(cluster.workers.pop(), allow_graceful=False)
 
-    loses = threading.Thread(target=lose)
+    loses = threading.Thread(target=lose, daemon=True)
     loses.start()
     found = cede.ray.map(slow, range(4))
-    loses.join()
+    loses.join(timeout=10)
+    assert not loses.is_alive()
     assert found == [row(seed) for seed in range(4)]
     # What the lost machine was at was begun twice.
     assert len(list(tmp_path.iterdir())) > 4

@@ -56,7 +56,7 @@ pub struct Criticality {
     pub gap: f64,
     /// Greatest deceleration (m/s²) at which the second vehicle would have had to brake in order to enter the
     /// conflict area no sooner than the first, keeping its speed, would have left it (after Cooper and Ferguson
-    /// 1976). 0 if it never had to; `None` without an area that both leave.
+    /// 1976). 0 if it never had to; `None` if both were in the area at once, or the record does not say.
     pub deceleration: Option<f64>,
 }
 
@@ -205,12 +205,12 @@ fn gap(encounter: &Encounter, states: &[[State; 2]]) -> f64 {
 }
 
 fn deceleration(states: &[[State; 2]], spans: [Span; 2], stays: [Stay; 2]) -> Option<f64> {
+    // Whoever entered too early would have had to brake without bound just before.
+    post_encroachment(stays)?;
     let first = first(stays)?;
-    let (leads, follows) = (spans[first], spans[1 - first]);
-    stays[first].exit?;
     let required = states.iter().map(|state| {
         let [lead, follower] = [state[first], state[1 - first]];
-        required(lead, leads, follower, follows)
+        required(lead, spans[first], follower, spans[1 - first])
     });
     Some(required.fold(0.0, f64::max))
 }

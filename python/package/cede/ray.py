@@ -44,8 +44,8 @@ def map(
     """`[function(item) for item in items]`, on a Ray cluster.
 
     Args:
-        function: What is computed of an item. It and the items travel to the workers, so the files
-            that they name have to be there. What it raises is raised here.
+        function: What is computed of an item. It and the items travel to the workers; the files
+            that they name, and modules of your own, have to be there. What it raises is raised.
         items: The items.
         address: The cluster, as in `ray.init`; by default the one that is connected, or that of
             `RAY_ADDRESS`, or this machine.
@@ -59,7 +59,9 @@ def map(
     results = [task.remote(function, item) for item in items]
     try:
         return ray.get(results)
-    except ray.exceptions.WorkerCrashedError as lost:
+    except ray.exceptions.RayTaskError:
+        raise
+    except ray.exceptions.RayError as lost:
         raise Error(f"an item was lost with its worker, and {retries} times again") from lost
     finally:
         for result in results:
