@@ -60,6 +60,9 @@ pub(crate) fn find(dir: &Path, site: &Site) -> Result<Found, DataError> {
 
 /// The names of the folders with recordings in `dir` or in its `recorded_trackfiles`, in alphabetical order.
 pub(crate) fn sites(dir: &Path) -> Result<Vec<String>, DataError> {
+    if !scenarios(dir)?.is_empty() {
+        return Ok(vec![name_of(dir)]);
+    }
     let inner = dir.join("recorded_trackfiles");
     let dir = if inner.is_dir() { &inner } else { dir };
     let unreadable = |error| DataError::new(dir, Problem::Unreadable(error));

@@ -109,7 +109,7 @@ impl Dataset {
     }
 
     /// The sites whose folders are in `dir`, or in its `recorded_trackfiles`, by their folders' names in
-    /// alphabetical order: what [`Dataset::load`] takes.
+    /// alphabetical order: what [`Dataset::load`] takes. Scenarios together are one.
     ///
     /// # Errors
     /// `dir` cannot be read, or there is no folder with recordings in it.

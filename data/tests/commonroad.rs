@@ -155,6 +155,7 @@ fn a_folder_of_scenarios_is_one_data_set() {
     assert_eq!(named, [(0, "ZAM_a_1_T-1"), (1, "ZAM_b_1_T-1")]);
     assert!(dataset.map.is_none() && dataset.map_of(1).is_some());
     assert_eq!(dataset.every_pair().encounters.len(), 2);
+    assert_eq!(Dataset::sites(folder.path()).unwrap(), [dataset.site.name]);
 }
 
 #[test]

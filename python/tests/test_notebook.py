@@ -14,7 +14,7 @@ PAPER = Path(__file__).parents[1] / "examples" / "paper.ipynb"
 
 def run(folder):
     """The notebook after its run, with the recordings in `folder`."""
-    environment = {**os.environ, "CEDE_INTERACTION_DIR": str(folder), "MPLBACKEND": "agg"}
+    environment = {**os.environ, "CEDE_INTERACTION_DIR": str(folder)}
     notebook = nbformat.read(PAPER, as_version=4)
     client = nbclient.NotebookClient(notebook, timeout=300, kernel_name="python3")
     client.execute(env=environment)
