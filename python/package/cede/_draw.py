@@ -62,6 +62,15 @@ class Scene:
 
 def _meeting_point(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """The middle between the nearest points of two routes."""
+    first, second = _dense(first), _dense(second)
     gaps = np.linalg.norm(first[:, None] - second[None], axis=2)
     i, j = np.unravel_index(np.argmin(gaps), gaps.shape)
     return (first[i] + second[j]) / 2
+
+
+def _dense(route: np.ndarray) -> np.ndarray:
+    """The route with a point every half metre: its own may be far apart."""
+    steps = np.linalg.norm(np.diff(route, axis=0), axis=1)
+    arc = np.concatenate([[0.0], np.cumsum(steps)])
+    at = np.arange(0.0, arc[-1] + 0.25, 0.5)
+    return np.column_stack([np.interp(at, arc, route[:, axis]) for axis in range(2)])

@@ -87,7 +87,7 @@ class Replay:
                 recording.log(f"route/{name}", rr.LineStrips3D([flat(route)]), static=True)
             for state in self.states.itertuples(index=False):
                 judged = state.vehicle < len(NAMES)
-                name = NAMES[state.vehicle] if judged else f"track {state.track}"
+                name = NAMES[state.vehicle] if judged else f"track-{state.track}"
                 recording.set_time("time", duration=STEP * state.step)
                 recording.log(f"vehicle/{name}", _box(rr, state))
                 if judged:
