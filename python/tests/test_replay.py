@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import cede
-from cede.replay import STEP, main, replay
+from cede.replay import main, replay
 
 CROSSING = Path(__file__).parents[2] / "fuzz" / "seeds" / "commonroad" / "crossing.xml"
 
@@ -43,7 +43,6 @@ def test_a_gif_has_a_picture_for_each_step(tmp_path):
     driven.gif(tmp_path / "x.gif", speed=2)
     with image.open(tmp_path / "x.gif") as made:
         assert made.size == (480, 480)
-        assert made.info["duration"] == 1000 * STEP / 2
         # Equal pictures in a row are one that lasts longer.
         lasts, colours = 0, set()
         for frame in range(made.n_frames):
