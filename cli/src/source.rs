@@ -1,4 +1,4 @@
-//! Where encounters come from: a folder of recordings, or the synthetic generator.
+//! Where encounters come from: recordings, CommonRoad scenarios, or the synthetic generator.
 
 use crate::failure::Failure;
 use cede_data::Dataset;
@@ -13,11 +13,11 @@ const ENCOUNTERS: usize = 1000;
 /// The options that name a data set.
 #[derive(clap::Args)]
 pub(crate) struct Source {
-    /// Folder of recordings, or `synthetic`: the embedded generator
+    /// Folder of recordings, a CommonRoad scenario (.xml) or a folder of them, or `synthetic`: the embedded generator
     #[arg(long, value_name = "DIR|synthetic", value_parser = NonEmptyStringValueParser::new())]
     pub(crate) data: String,
     /// Sites of the recordings, separated by commas: `EP0`, `MA`, the name of a folder, or the path of a
-    /// site description; `all`: every folder of recordings in DIR [default: EP0]
+    /// site description; `all`: every folder of recordings in DIR [default: EP0]. Scenarios are sites of their own
     #[arg(long, value_delimiter = ',', value_name = "NAME[,NAME…]|all", value_parser = NonEmptyStringValueParser::new())]
     site: Vec<String>,
     /// Number of synthetic encounters, at least [default: 1000]

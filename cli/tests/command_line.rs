@@ -202,6 +202,34 @@ fn json_is_one_value_on_standard_output() {
 }
 
 #[test]
+fn the_shares_of_a_campaign_add_up_to_the_whole() {
+    let setups = |options: &str| {
+        let run = cede_in(
+            Path::new("."),
+            &format!("verify campaign --scenarios 10 --seed 5 {options} --json"),
+        );
+        let printed: Value = serde_json::from_str(&stdout(&run.success())).unwrap();
+        printed["setups"].as_array().unwrap().clone()
+    };
+    let counts = |setup: &Value| {
+        let counts = setup
+            .as_object()
+            .unwrap()
+            .values()
+            .filter_map(Value::as_u64);
+        counts.collect::<Vec<_>>()
+    };
+    let shares: Vec<_> = (1..=3)
+        .map(|share| setups(&format!("--shard {share}/3")))
+        .collect();
+    for (place, setup) in setups("").iter().enumerate() {
+        let sums = shares.iter().map(|share| counts(&share[place]));
+        let sums = sums.reduce(|a, b| a.iter().zip(b).map(|(a, b)| a + b).collect());
+        assert_eq!(Some(counts(setup)), sums, "{setup}");
+    }
+}
+
+#[test]
 fn reproduce_says_how_far_it_is_without_a_terminal() {
     let folder = tempfile::tempdir().unwrap();
     let arguments = "reproduce --data synthetic --encounters 60 --rows bc --seeds 2 --set bc.updates=20 --set bc.width=16";

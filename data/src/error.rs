@@ -150,6 +150,9 @@ pub enum Problem {
     /// The map is not valid.
     #[error("not a Lanelet2 map: {0}")]
     Map(String),
+    /// The scenario is not valid.
+    #[error("not a CommonRoad scenario of version 2020a: {0}")]
+    Scenario(String),
 }
 
 impl Problem {
@@ -188,6 +191,9 @@ impl Problem {
                 "give the part after the hole a track number of its own; holes up to 1 s are interpolated"
             }
             Self::Site(_) => "compare with data/src/sites/EP0.toml",
+            Self::Scenario(_) => {
+                "restore the file from its source, or convert it to version 2020a; the vehicles need exact states"
+            }
             Self::Map(_) => {
                 "restore the map from its source, or remove it: it serves for drawing and rights of way, nothing else"
             }

@@ -29,6 +29,7 @@ impl RecordingFile {
         Ok(Recording {
             file: self.number,
             tracks,
+            scene: None,
         })
     }
 }
@@ -59,6 +60,9 @@ pub(crate) fn find(dir: &Path, site: &Site) -> Result<Found, DataError> {
 
 /// The names of the folders with recordings in `dir` or in its `recorded_trackfiles`, in alphabetical order.
 pub(crate) fn sites(dir: &Path) -> Result<Vec<String>, DataError> {
+    if !scenarios(dir)?.is_empty() {
+        return Ok(vec![name_of(dir)]);
+    }
     let inner = dir.join("recorded_trackfiles");
     let dir = if inner.is_dir() { &inner } else { dir };
     let unreadable = |error| DataError::new(dir, Problem::Unreadable(error));
@@ -107,12 +111,37 @@ fn map_of(recordings: &Path, site: &Site) -> Option<PathBuf> {
     candidates.into_iter().find(|path| path.is_file())
 }
 
+/// The CommonRoad scenarios at `dir`: itself, or those in a folder that holds no CSV. None in any other place.
+pub(crate) fn scenarios(dir: &Path) -> Result<Vec<PathBuf>, DataError> {
+    if dir.extension().is_some_and(|extension| extension == "xml") {
+        return Ok(vec![dir.to_owned()]);
+    }
+    if !dir.is_dir() || !csv_files(dir)?.is_empty() {
+        return Ok(Vec::new());
+    }
+    files_in(dir, "xml")
+}
+
+/// The last part of a path: what a folder is called.
+pub(crate) fn name_of(dir: &Path) -> String {
+    let whole = dir.canonicalize().unwrap_or_else(|_| dir.to_owned());
+    let name = whole.file_name().unwrap_or(whole.as_os_str());
+    name.to_string_lossy().into_owned()
+}
+
 fn csv_files(dir: &Path) -> Result<Vec<PathBuf>, DataError> {
+    files_in(dir, "csv")
+}
+
+fn files_in(dir: &Path, ending: &str) -> Result<Vec<PathBuf>, DataError> {
     let unreadable = |error| DataError::new(dir, Problem::Unreadable(error));
     let mut files = Vec::new();
     for entry in std::fs::read_dir(dir).map_err(unreadable)? {
         let path = entry.map_err(unreadable)?.path();
-        if path.extension().is_some_and(|extension| extension == "csv") {
+        if path
+            .extension()
+            .is_some_and(|extension| extension == ending)
+        {
             files.push(path);
         }
     }

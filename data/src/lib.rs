@@ -1,6 +1,7 @@
 //! From recorded tracks to encounters: readers, site descriptions, extraction; and synthetic traffic.
 #![forbid(unsafe_code)]
 
+pub mod commonroad;
 mod crossing;
 mod draft;
 pub mod encounter;
@@ -27,9 +28,9 @@ pub use extract::{NEAR, extract};
 pub use rights::{Entry, Rights, Rule};
 pub use site::{Files, Site};
 pub use summary::{Distribution, FileSummary, REST, RightsSummary, Summary};
-pub use tracks::{RawState, Recording, STEP_MS, Track};
+pub use tracks::{RawState, Recording, STEP_MS, Scene, Track};
 
-use lanelet::Map;
+use lanelet::{ConflictArea, Map};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -81,9 +82,18 @@ impl Dataset {
     /// folder's name, beside it or under `maps`. The files are read and searched
     /// in parallel; the result does not depend on the number of threads.
     ///
+    /// If `dir` is a CommonRoad scenario (`.xml`), or a folder with scenarios and no CSV, those are read
+    /// ([`commonroad`]), numbered in alphabetical order. Each brings its own map and name; every two
+    /// vehicles whose ways cross or merge are an encounter, and all encounters are for testing. There
+    /// `site` counts only if it is the path of a site description.
+    ///
     /// # Errors
     /// When the folder holds no recording, or a file is malformed.
     pub fn load(dir: &Path, site: &str) -> Result<Self, DataError> {
+        let scenarios = files::scenarios(dir)?;
+        if !scenarios.is_empty() {
+            return commonroad::dataset(dir, site, &scenarios);
+        }
         let site = Site::named(site)?;
         let found = files::find(dir, &site)?;
         let recordings = found
@@ -99,7 +109,7 @@ impl Dataset {
     }
 
     /// The sites whose folders are in `dir`, or in its `recorded_trackfiles`, by their folders' names in
-    /// alphabetical order: what [`Dataset::load`] takes.
+    /// alphabetical order: what [`Dataset::load`] takes. Scenarios together are one.
     ///
     /// # Errors
     /// `dir` cannot be read, or there is no folder with recordings in it.
@@ -107,13 +117,19 @@ impl Dataset {
         files::sites(dir)
     }
 
-    /// The encounters of `recordings` at `site`, with the rights that its `map` gives them.
+    /// The encounters of `recordings` at `site`, with the rights that its `map` gives them. A recording with a
+    /// [`Scene`] of its own is judged by the rules of `site` on the scene's map.
     #[must_use]
     pub fn new(site: Site, recordings: Vec<Recording>, map: Option<Map>) -> Self {
-        let encounters = recordings
-            .par_iter()
-            .flat_map_iter(|recording| extract(&site, map.as_ref(), recording))
-            .collect();
+        let encounters = |recording: &Recording| match &recording.scene {
+            None => extract(&site, map.as_ref(), recording),
+            Some(scene) => {
+                let mut named = site.clone();
+                named.name.clone_from(&scene.name);
+                extract(&named, Some(&scene.map), recording)
+            }
+        };
+        let encounters = recordings.par_iter().flat_map_iter(encounters).collect();
         Self {
             site,
             recordings,
@@ -130,6 +146,31 @@ impl Dataset {
         let mut site = self.site.clone();
         site.every_pair = true;
         Self::new(site, self.recordings.clone(), self.map.clone())
+    }
+
+    /// The map on which `file` was recorded.
+    #[must_use]
+    pub fn map_of(&self, file: u16) -> Option<&Map> {
+        let scene = self.recording(file).and_then(|r| r.scene.as_deref());
+        scene.map(|scene| &scene.map).or(self.map.as_ref())
+    }
+
+    /// Where the lanes of the judged vehicles of `encounter` overlap. `None` if they do not, or without a map.
+    ///
+    /// Cost: the matching of two tracks to the map.
+    #[must_use]
+    pub fn conflict_area(&self, encounter: &Encounter) -> Option<ConflictArea> {
+        let map = self.map_of(encounter.id.file)?;
+        let tracks = &self.recording(encounter.id.file)?.tracks;
+        let trace = |id| Some(map.trace(tracks.iter().find(|track| track.id == id)?));
+        let [left, other] = [trace(encounter.id.left)?, trace(encounter.id.other)?];
+        map.conflict_area([&left, &other])
+    }
+
+    fn recording(&self, file: u16) -> Option<&Recording> {
+        self.recordings
+            .iter()
+            .find(|recording| recording.file == file)
     }
 
     /// The encounters of `split`, in order.

@@ -49,6 +49,22 @@ pub enum Rule {
     Open,
 }
 
+impl Rule {
+    /// As in tables, and as it is serialized.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Unknown => "unknown",
+            Self::AllWayStop => "all-way-stop",
+            Self::Regulation => "regulation",
+            Self::MinorRoad => "minor-road",
+            Self::LeftTurn => "left-turn",
+            Self::Right => "right",
+            Self::Open => "open",
+        }
+    }
+}
+
 impl Rights {
     /// Who goes first whatever the order in which the two arrive; `None` at an all-way stop.
     #[must_use]

@@ -1,8 +1,10 @@
 //! Recordings as they were read: vehicles' tracks at 10 Hz, in the site's own frame.
 
 use super::error::{DataError, Problem};
+use super::lanelet::Map;
 use std::collections::HashMap;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Milliseconds from one state of a track to the next.
 pub const STEP_MS: u64 = 100;
@@ -17,6 +19,17 @@ pub struct Recording {
     pub file: u16,
     /// The vehicles' tracks in the order of the file.
     pub tracks: Vec<Track>,
+    /// The place of this recording alone; `None` if it is the data set's site.
+    pub scene: Option<Arc<Scene>>,
+}
+
+/// A place that is not the data set's site: that of a scenario.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Its name; its encounters are named by it.
+    pub name: String,
+    /// Its map.
+    pub map: Map,
 }
 
 /// One vehicle's track: a state every 100 ms without a hole.

@@ -1,17 +1,27 @@
 //! Recordings, maps and encounters as columns of numbers.
 
 use crate::error::{error, named};
-use crate::junction::kind_name;
+use crate::junction::{control_name, kind_name};
 use cede_data::lanelet::LineKind;
 use cede_data::{self as data, Encounter, Manoeuvre, Participant, Role, Split};
+use cede_sim::criticality::{AreaOf, Criticality};
 use numpy::{IntoPyArray, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use rayon::prelude::*;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A line of a map: what it is, and its points.
 type Line<'py> = (&'static str, Bound<'py, PyArray2<f64>>);
+
+/// A lanelet of a map: left bound, right bound, successors, speed limit.
+type Lanelet<'py> = (
+    Bound<'py, PyArray2<f64>>,
+    Bound<'py, PyArray2<f64>>,
+    Vec<usize>,
+    Option<f64>,
+);
 
 /// A site's recordings and the encounters in them.
 #[pyclass(frozen, module = "cede")]
@@ -75,6 +85,19 @@ impl Dataset {
         states(py, &self.of(split)?)
     }
 
+    /// Columns of how critical the recorded encounters were, one row each.
+    #[pyo3(signature = (split = "all"))]
+    fn criticality_columns<'py>(
+        &self,
+        py: Python<'py>,
+        split: &str,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let all = self.of(split)?;
+        let of = |encounter: &&Encounter| Criticality::of(&self.0, encounter);
+        let measured: Vec<_> = py.detach(|| all.par_iter().map(of).collect());
+        criticality(py, &all, &measured)
+    }
+
     /// The route of a vehicle of encounter number `encounter`: points (m), shape (n, 2).
     #[pyo3(signature = (encounter, vehicle, split = "all"))]
     fn route<'py>(
@@ -99,6 +122,21 @@ impl Dataset {
             .map(|p| vec![p.x, p.y])
             .collect();
         PyArray2::from_vec2(py, &points).map_err(error)
+    }
+
+    /// The lanelets of the map: the points of the left and the right bound of each in m, the lanelets that it leads
+    /// into, as indices, and its speed limit in m/s.
+    fn map_lanelets<'py>(&self, py: Python<'py>) -> PyResult<Vec<Lanelet<'py>>> {
+        let bound = |points: &[[f64; 2]]| {
+            let points: Vec<_> = points.iter().map(|p| p.to_vec()).collect();
+            PyArray2::from_vec2(py, &points).map_err(error)
+        };
+        let lanelets = self.0.map.iter().flat_map(|map| &map.lanelets);
+        let lanelet = |lanelet: &data::lanelet::Lanelet| {
+            let (left, right) = (bound(&lanelet.left)?, bound(&lanelet.right)?);
+            Ok((left, right, lanelet.successors.clone(), lanelet.limit))
+        };
+        lanelets.map(lanelet).collect()
     }
 
     /// The lines of the map: what each is, and its points, shape (n, 2).
@@ -142,7 +180,7 @@ fn line_name(kind: LineKind) -> &'static str {
 }
 
 /// Adds a column of `values`, whose memory NumPy takes over.
-fn column<T: numpy::Element>(
+pub(crate) fn column<T: numpy::Element>(
     table: &Bound<'_, PyDict>,
     name: &str,
     values: impl Iterator<Item = T>,
@@ -203,12 +241,31 @@ fn encounters<'py>(py: Python<'py>, all: &[&Encounter]) -> PyResult<Bound<'py, P
     column(&table, "conflict_x", rows().map(|e| e.conflict_point.x))?;
     column(&table, "conflict_y", rows().map(|e| e.conflict_point.y))?;
     column(&table, "vehicles", rows().map(|e| e.participants.len()))?;
+    words(
+        &table,
+        "right_of_way",
+        rows().map(|e| e.rights.first.map_or("none", role_name)),
+    )?;
+    words(&table, "rule", rows().map(|e| e.rights.rule.name()))?;
     for role in Role::BOTH {
         let name = role_name(role);
         words(
             &table,
             &format!("{name}_manoeuvre"),
             rows().map(|e| manoeuvre(e.judged(role))),
+        )?;
+        let number = |what: &str, of: fn(&Participant) -> f32| {
+            let values = rows().map(|e| of(e.judged(role)));
+            column(&table, &format!("{name}_{what}"), values)
+        };
+        number("length", |vehicle| vehicle.footprint.length)?;
+        number("width", |vehicle| vehicle.footprint.width)?;
+        number("line", |vehicle| vehicle.entry.line.unwrap_or(f32::NAN))?;
+        number("limit", |vehicle| vehicle.entry.limit.unwrap_or(f32::NAN))?;
+        words(
+            &table,
+            &format!("{name}_control"),
+            rows().map(|e| control_name(e.judged(role).entry.control)),
         )?;
         column(
             &table,
@@ -221,6 +278,39 @@ fn encounters<'py>(py: Python<'py>, all: &[&Encounter]) -> PyResult<Bound<'py, P
             rows().map(|e| first(e.judged(role)).0),
         )?;
     }
+    Ok(table)
+}
+
+fn criticality<'py>(
+    py: Python<'py>,
+    all: &[&Encounter],
+    measured: &[Criticality],
+) -> PyResult<Bound<'py, PyDict>> {
+    let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
+    let rows = || measured.iter();
+    let table = PyDict::new(py);
+    words(&table, "site", all.iter().map(|e| e.id.site.as_str()))?;
+    column(&table, "file", all.iter().map(|e| e.id.file))?;
+    column(&table, "left", all.iter().map(|e| e.id.left))?;
+    column(&table, "other", all.iter().map(|e| e.id.other))?;
+    column(&table, "ttc", rows().map(|c| number(c.ttc)))?;
+    for role in Role::BOTH {
+        let name = format!("{}_et", role_name(role));
+        let time = |c: &Criticality| number(c.encroachment[role as usize]);
+        column(&table, &name, rows().map(time))?;
+    }
+    column(&table, "pet", rows().map(|c| number(c.post_encroachment)))?;
+    column(&table, "gap", rows().map(|c| c.gap))?;
+    column(
+        &table,
+        "deceleration",
+        rows().map(|c| number(c.deceleration)),
+    )?;
+    words(
+        &table,
+        "area",
+        rows().map(|c| c.area.map_or("none", AreaOf::name)),
+    )?;
     Ok(table)
 }
 

@@ -129,14 +129,14 @@ fn json(value: &impl Serialize) -> PyResult<String> {
 }
 
 /// A driver that is judged.
-enum Contender {
+pub(crate) enum Contender {
     Baseline(Baseline),
     Cede(Policy),
     Called(Arc<Function>),
 }
 
 impl Contender {
-    fn of(driver: &Bound<'_, PyAny>, name: &str) -> PyResult<Self> {
+    pub(crate) fn of(driver: &Bound<'_, PyAny>, name: &str) -> PyResult<Self> {
         if let Ok(policy) = driver.extract::<Policy>() {
             return Ok(Self::Cede(policy));
         }
@@ -153,7 +153,7 @@ impl Contender {
         }
     }
 
-    fn fit(
+    pub(crate) fn fit(
         &self,
         training: &[&Encounter],
         shield: Option<cede_controller::Contract>,
@@ -173,7 +173,7 @@ impl Contender {
     }
 
     /// Raises what the driver has raised.
-    fn raise(&self) -> PyResult<()> {
+    pub(crate) fn raise(&self) -> PyResult<()> {
         let Self::Called(function) = self else {
             return Ok(());
         };
@@ -182,7 +182,7 @@ impl Contender {
 }
 
 /// A driver written in Python.
-struct Function {
+pub(crate) struct Function {
     name: String,
     call: Py<PyAny>,
     /// The first exception that it raised; then nothing is asked any more.
@@ -301,6 +301,14 @@ impl Seen {
     }
 }
 
+pub(crate) fn end_name(end: End) -> &'static str {
+    match end {
+        End::Finished => "finished",
+        End::Collision => "collision",
+        End::TimeOut => "time-out",
+    }
+}
+
 /// One episode of the evaluation.
 #[derive(Serialize)]
 struct Row<'a> {
@@ -330,11 +338,7 @@ impl<'a> Row<'a> {
             left: encounter.id.left,
             other: encounter.id.other,
             ego: drive.ego.map(role_name),
-            end: match drive.episode.end {
-                End::Finished => "finished",
-                End::Collision => "collision",
-                End::TimeOut => "time-out",
-            },
+            end: end_name(drive.episode.end),
             first: drive.episode.first().map(role_name),
             recorded_first: role_name(encounter.first),
             steps: drive.episode.steps(),

@@ -37,6 +37,11 @@ const PRIORITIES: [(&str, Priority); 3] = [
     ("signed", Priority::Signed),
 ];
 
+pub(crate) fn control_name(control: Control) -> &'static str {
+    let found = CONTROLS.iter().find(|(_, known)| *known == control);
+    found.map_or("unknown", |(name, _)| name)
+}
+
 pub(crate) fn class_named(name: &str) -> PyResult<Class> {
     named("kind", name, &CLASSES)
 }

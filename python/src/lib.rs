@@ -11,6 +11,7 @@ mod junction;
 mod look;
 mod observation;
 mod policy;
+mod replay;
 
 use pyo3::prelude::*;
 
@@ -44,6 +45,7 @@ fn _cede(module: &Bound<'_, PyModule>) -> PyResult<()> {
     )?;
     module.add("SCALES", look::SCALES.to_vec())?;
     module.add_function(wrap_pyfunction!(evaluate::evaluate, module)?)?;
+    module.add_function(wrap_pyfunction!(replay::replay, module)?)?;
     module.add_function(wrap_pyfunction!(evaluate::driver_names, module)?)?;
     Ok(())
 }

@@ -3,6 +3,7 @@
 
 pub mod batch;
 pub mod campaign;
+pub mod criticality;
 pub mod driver;
 pub mod episode;
 pub mod evaluate;

@@ -51,7 +51,7 @@ impl<'e> Meeting<'e> {
     /// # Errors
     /// See [`NoJunction`].
     pub fn new(encounter: &'e Encounter) -> Result<Self, NoJunction> {
-        let junction = judged(encounter, |_| REACH)?;
+        let junction = judged(encounter, |_| REACH, |_| Footprint::PAPER)?;
         Ok(Self {
             encounter,
             junction,
@@ -65,27 +65,32 @@ impl<'e> Meeting<'e> {
     }
 }
 
-/// The junction of an encounter's judged vehicles as far as they were recorded.
+/// The junction of an encounter's judged vehicles, of the sizes `body`, as far as they were recorded.
 ///
 /// # Errors
 /// See [`NoJunction`].
-pub(crate) fn recorded(encounter: &Encounter) -> Result<Crossroads, NoJunction> {
-    judged(encounter, |vehicle| {
-        vehicle.record.last().map_or(0.0, |sample| sample.s)
-    })
+pub(crate) fn recorded(
+    encounter: &Encounter,
+    body: impl Fn(&Participant) -> Footprint,
+) -> Result<Crossroads, NoJunction> {
+    let reach = |vehicle: &Participant| vehicle.record.last().map_or(0.0, |sample| sample.s);
+    judged(encounter, reach, body)
 }
 
-/// The junction of the judged vehicles, whose paths go on straight until their lengths are `reach` (m).
+/// The junction of the judged vehicles, of the sizes `body`, whose paths go on straight until their lengths are
+/// `reach` (m).
 fn judged(
     encounter: &Encounter,
     reach: impl Fn(&Participant) -> f32,
+    body: impl Fn(&Participant) -> Footprint,
 ) -> Result<Crossroads, NoJunction> {
     let [left, other] = Role::BOTH.map(|role| {
         let vehicle = encounter.judged(role);
         let more = (reach(vehicle) - vehicle.route.length()).max(0.0);
         vehicle.route.extended(0.0, more)
     });
-    let mut builder = builder([(&left?, Footprint::PAPER), (&other?, Footprint::PAPER)])?;
+    let [left_body, other_body] = Role::BOTH.map(|role| body(encounter.judged(role)));
+    let mut builder = builder([(&left?, left_body), (&other?, other_body)])?;
     for role in Role::BOTH {
         let control = encounter.judged(role).entry.control;
         builder.control(path(role as usize), control)?;

@@ -5,9 +5,11 @@ mod svo;
 mod ttc;
 
 pub use svo::{recorded_states, svo_series};
+pub(crate) use ttc::half_diagonal;
 pub use ttc::{HORIZON as TTC_HORIZON, least_ttc};
 
 use crate::episode::{Action, End, Episode};
+use cede_controller::Footprint;
 use cede_controller::kinematics::STEP;
 use cede_data::encounter::{Encounter, Role};
 
@@ -66,7 +68,8 @@ impl Measures {
             position_rmse: deviation::position(encounter, episode, tested),
             svo_rmse: svo::error(encounter, episode),
             pet_error: pet_error(encounter, episode),
-            min_ttc: least_ttc(encounter, &episode.states).map(|(_, seconds)| seconds),
+            min_ttc: least_ttc(encounter, &episode.states, [Footprint::PAPER; 2])
+                .map(|(_, seconds)| seconds),
             jerk: jerk(episode, tested),
             shielded: shielded(episode, tested),
         }

@@ -103,7 +103,7 @@ impl<'e> ObservationModel<'e> {
     #[must_use]
     pub fn new(encounter: &'e Encounter) -> Self {
         let participants = &encounter.participants;
-        let junction = recorded(encounter).ok();
+        let junction = recorded(encounter, |_| Footprint::PAPER).ok();
         let rival = junction.as_ref().and_then(|junction| conflict(junction, 0));
         let rival = rival.filter(|conflict| conflict.zones().next().is_some());
         let recorded = [0, 1].map(|i| participants[i].conflict_s);

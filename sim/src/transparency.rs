@@ -2,7 +2,9 @@
 
 use crate::meeting::{path, recorded, sensed};
 use cede_controller::kinematics::State;
-use cede_controller::{ConflictKind, Contract, ContractError, Observation, Shield, Track};
+use cede_controller::{
+    ConflictKind, Contract, ContractError, Footprint, Observation, Shield, Track,
+};
 use cede_data::encounter::{Encounter, Participant, Role, Sample};
 use rayon::prelude::*;
 
@@ -132,7 +134,7 @@ fn table<'c>(counted: &(impl Iterator<Item = &'c Transparency> + Clone)) -> Vec<
 fn count(contracts: &[Contract], encounter: &Encounter, role: Role) -> Vec<Transparency> {
     let mut counts = vec![Transparency::none(role, encounter.kind); contracts.len()];
     let (mine, theirs) = (role as usize, 1 - role as usize);
-    let Ok(junction) = recorded(encounter) else {
+    let Ok(junction) = recorded(encounter, |_| Footprint::PAPER) else {
         return counts;
     };
     let enter = |&contract| Shield::<1>::enter(contract, &junction, path(mine)).ok();

@@ -17,16 +17,15 @@ pub fn interaction() -> Option<PathBuf> {
     )
 }
 
-/// The folder `name` of the public verification instances: in `CEDE_CONFORMANCE_DIR`, or in
+/// The folder `name` of the public conformance material: in `CEDE_CONFORMANCE_DIR`, or in
 /// `../shared/conformance` beside the repository. `None`, and a line that says so, where there is none.
 #[must_use]
 pub fn conformance(name: &str) -> Option<PathBuf> {
     let folder = material("CEDE_CONFORMANCE_DIR", "conformance").join(name);
-    let there = folder.join("instances.csv").is_file();
     found(
-        there,
+        folder.is_dir(),
         folder,
-        "verification instances (CEDE_CONFORMANCE_DIR)",
+        "conformance material (CEDE_CONFORMANCE_DIR)",
     )
 }
 

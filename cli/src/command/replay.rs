@@ -19,7 +19,7 @@ use std::str::FromStr;
 /// Options of `cede replay`.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// A recording: INTERACTION's vehicle_tracks_NNN.csv, or a CSV of track,t,x,y
+    /// A recording: INTERACTION's vehicle_tracks_NNN.csv, a CSV of track,t,x,y, or a CommonRoad scenario (.xml)
     file: PathBuf,
     /// Site of the recording: `EP0`, `MA`, or the path of a site description
     #[arg(long, default_value = "EP0")]
@@ -182,7 +182,7 @@ impl Args {
                     format!("name one of these with --pair: {pairs}"),
                 ),
                 None => Failure::input(
-                    format!("{file}: it contains no encounter of a left-turner"),
+                    format!("{file}: it contains no encounter"),
                     "name another file, or with --site the site that it was recorded at",
                 ),
             }

@@ -2,6 +2,7 @@
 
 use super::model::Case;
 use super::why::{Class, words};
+use cede_controller::Footprint;
 use cede_controller::kinematics::{STEP, State};
 use cede_data::{Encounter, EncounterId, Role};
 use cede_sim::episode::{Action, End};
@@ -180,7 +181,11 @@ fn collision(states: &[[State; 2]]) -> Moment {
 
 fn near_miss(drive: &Drive<'_>) -> Option<Moment> {
     let known = drive.measures.min_ttc.filter(|seconds| *seconds < NEAR)?;
-    let (step, _) = least_ttc(drive.encounter, &drive.episode.states)?;
+    let (step, _) = least_ttc(
+        drive.encounter,
+        &drive.episode.states,
+        [Footprint::PAPER; 2],
+    )?;
     Some(Moment {
         kind: Kind::NearMiss,
         badness: -known as f32,

@@ -1,10 +1,12 @@
 //! Lanelet2 maps (OSM XML), read as a driver reads them: lanes, lines, signs, and who gives way to whom.
 
+mod area;
 mod lane;
 mod reader;
 mod regulation;
 mod trace;
 
+pub use area::{ConflictArea, rectangle};
 pub use lane::Lanelet;
 pub use regulation::{Regulation, RegulationKind, Sign};
 pub use trace::{OnLanelet, Trace};

@@ -100,7 +100,11 @@ impl Generated {
             Control::Uncontrolled => rng.random_range(0.08..0.3),
         };
         let tracks = Traffic::new(&layout, flow, rng).record(WARM_UP, STEPS);
-        let recording = Recording { file, tracks };
+        let recording = Recording {
+            file,
+            tracks,
+            scene: None,
+        };
         // The map is ours and its tests read it; without it nothing would be known of the rights.
         let map = lanelet::parse(Path::new(&layout.name), &layout.osm()).ok();
         let encounters = extract(&layout.site(), map.as_ref(), &recording);

@@ -426,8 +426,13 @@ class Dataset:
     def recording_columns(self) -> dict[str, Any]: ...
     def encounter_columns(self, split: str = "all") -> dict[str, Any]: ...
     def state_columns(self, split: str = "all") -> dict[str, Any]: ...
+    def criticality_columns(self, split: str = "all") -> dict[str, Any]: ...
     def route(self, encounter: int, vehicle: int, split: str = "all") -> NDArray[np.float32]:
         """The route of a vehicle: points (m), shape (n, 2)."""
+    def map_lanelets(
+        self,
+    ) -> list[tuple[NDArray[np.float64], NDArray[np.float64], list[int], float | None]]:
+        """The lanelets: left and right bound (n, 2), indices of the successors, limit in m/s."""
     def map_lines(self) -> list[tuple[str, NDArray[np.float64]]]:
         """The lines of the map: what each is, and its points, shape (n, 2)."""
 
@@ -508,3 +513,13 @@ def evaluate(
     seed: int,
     threads: int,
 ) -> tuple[str, str]: ...
+def replay(
+    driver: Any,
+    name: str,
+    dataset: Dataset,
+    split: str,
+    encounter: int,
+    until: str,
+    shield: Contract | None,
+    seed: int,
+) -> tuple[dict[str, NDArray[Any]], str]: ...

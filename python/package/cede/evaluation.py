@@ -60,12 +60,12 @@ def evaluate(
     import pandas
 
     dataset = open_dataset(data, site=site, encounters=encounters, seed=seed)
-    contract = _contract(shield)
+    contract = contract_of(shield)
     rows, all_episodes = [], []
     for one in driver if isinstance(driver, (list, tuple)) else [driver]:
-        name, known = _known(one, features)
+        name, judged = known(one, features)
         row, driven = _cede.evaluate(
-            known, name, dataset, split, mode, until, partner, contract, seed, threads
+            judged, name, dataset, split, mode, until, partner, contract, seed, threads
         )
         rows.append(json.loads(row))
         all_episodes += [{"driver": name, **episode} for episode in json.loads(driven)]
@@ -73,7 +73,8 @@ def evaluate(
     return (table, pandas.DataFrame(all_episodes)) if episodes else table
 
 
-def _contract(shield: bool | str | Contract) -> Contract | None:
+def contract_of(shield: bool | str | Contract) -> Contract | None:
+    """The contract of a shield; `None` without one."""
     if shield is False:
         return None
     if shield is True:
@@ -81,7 +82,7 @@ def _contract(shield: bool | str | Contract) -> Contract | None:
     return shield if isinstance(shield, Contract) else Contract(shield)
 
 
-def _known(driver: Driver, features: str | None) -> tuple[str, Any]:
+def known(driver: Driver, features: str | None) -> tuple[str, Any]:
     """The name of a driver in the table, and what Rust takes for it."""
     if isinstance(driver, Policy):
         return "policy", driver
@@ -94,6 +95,6 @@ def _known(driver: Driver, features: str | None) -> tuple[str, Any]:
     if name.endswith(".onnx"):
         return stem, Policy.from_onnx(name, features)
     if name not in DRIVERS:
-        known = ", ".join(DRIVERS)
-        raise Error(f"driver = `{name}` is neither a .cede nor an .onnx file, nor one of: {known}")
+        names = ", ".join(DRIVERS)
+        raise Error(f"driver = `{name}` is neither a .cede nor an .onnx file, nor one of: {names}")
     return name, name

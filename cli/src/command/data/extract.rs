@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::source::{Source, not_empty};
 use cede_controller::ConflictKind;
 use cede_data::{Dataset, Encounter, Manoeuvre, Role, Rule, STEP_MS, Summary, output};
+use cede_sim::criticality::{AreaOf, Criticality};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -64,13 +65,36 @@ struct EncounterRow<'d> {
     x: String,
     #[serde(rename = "Conflict_y_m")]
     y: String,
+    /// The measures of [`Criticality`]; empty where the record does not say them.
+    #[serde(rename = "TTC_s")]
+    ttc: String,
+    #[serde(rename = "Ego_encroachment_s")]
+    left_encroachment: String,
+    #[serde(rename = "Reactive_encroachment_s")]
+    other_encroachment: String,
+    #[serde(rename = "Post_encroachment_s")]
+    post_encroachment: String,
+    #[serde(rename = "Gap_m")]
+    gap: String,
+    #[serde(rename = "Required_deceleration_mps2")]
+    deceleration: String,
+    #[serde(rename = "Conflict_area")]
+    area: &'static str,
 }
 
 impl<'d> EncounterRow<'d> {
-    fn of(scenario: &'d str, encounter: &Encounter) -> Self {
+    fn of(dataset: &'d Dataset, encounter: &'d Encounter) -> Self {
         let vehicle = |role| encounter.judged(role);
+        let critical = Criticality::of(dataset, encounter);
+        let number = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:.3}"));
+        let [left_encroachment, other_encroachment] = critical.encroachment.map(number);
+        let site = &dataset.site;
         Self {
-            scenario,
+            // A recording with a place of its own is called by that.
+            scenario: match encounter.id.site == site.name {
+                true => &site.folder,
+                false => &encounter.id.site,
+            },
             file: format!("{:03}", encounter.id.file),
             start_ms: encounter.start_ms,
             end_ms: encounter.start_ms + STEP_MS * u64::from(encounter.steps),
@@ -94,6 +118,13 @@ impl<'d> EncounterRow<'d> {
             other_control: vehicle(Role::Other).entry.control.name(),
             x: format!("{:.3}", encounter.conflict_point.x),
             y: format!("{:.3}", encounter.conflict_point.y),
+            ttc: number(critical.ttc),
+            left_encroachment,
+            other_encroachment,
+            post_encroachment: number(critical.post_encroachment),
+            gap: number(Some(critical.gap)),
+            deceleration: number(critical.deceleration),
+            area: critical.area.map_or("none", AreaOf::name),
         }
     }
 }
@@ -110,7 +141,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         output::write(path, |out| {
             let mut csv = csv::Writer::from_writer(out);
             for encounter in &dataset.encounters {
-                csv.serialize(EncounterRow::of(&dataset.site.folder, encounter))?;
+                csv.serialize(EncounterRow::of(&dataset, encounter))?;
             }
             csv.flush()
         })?;
