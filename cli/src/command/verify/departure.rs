@@ -33,11 +33,11 @@ pub(crate) struct Departure {
     /// at the time of the build.
     #[arg(long, value_name = "FILE")]
     properties: Option<PathBuf>,
-    /// Only the region of the property with this identifier.
-    #[arg(long, value_name = "ID")]
-    only: Option<String>,
+    /// Only the regions of the properties with these identifiers, separated by commas.
+    #[arg(long, value_name = "ID[,ID…]", value_delimiter = ',')]
+    only: Vec<String>,
     /// The largest departure (m/s²) that is to be proved.
-    #[arg(long, value_name = "M/S2", default_value_t = 0.02)]
+    #[arg(long, value_name = "M/S2", default_value_t = 0.07)]
     bar: f64,
     /// Time limit per property and combination of its lists, in seconds.
     #[arg(long, value_name = "SECONDS", default_value_t = 10, value_parser = seconds())]
@@ -104,15 +104,14 @@ impl Departure {
 
     fn properties(&self) -> Result<Vec<StateProperty>, Failure> {
         let mut all = properties_of(self.properties.as_deref())?;
-        if let Some(only) = &self.only {
-            all.retain(|property| property.id == *only);
-            if all.is_empty() {
-                return Err(Failure::input(
-                    format!("there is no property {only}"),
-                    "`--only` takes an identifier of the file, such as SR-22",
-                ));
-            }
+        let unknown = |id: &&String| all.iter().all(|property| property.id != **id);
+        if let Some(id) = self.only.iter().find(unknown) {
+            return Err(Failure::input(
+                format!("there is no property {id}"),
+                "`--only` takes identifiers of the file, such as SR-22",
+            ));
         }
+        all.retain(|property| self.only.is_empty() || self.only.contains(&property.id));
         Ok(all)
     }
 }
