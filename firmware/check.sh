@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Runs the controller on a bare Cortex-M4F under QEMU and holds it to its bars: the host's decisions
-# bit for bit, flash and RAM (the linker script enforces them, too), instructions, no panic, no allocation.
+# Runs the controller on bare cores under QEMU and holds it to its bars: the host's decisions bit for bit, flash and
+# RAM (the linker script enforces RAM, too), instructions, no panic, no allocation. Cortex-M4F and rv32imafc with the policy
+# in f32; Cortex-M4F, M3, M0+ and rv32imac with the policy in integers.
 # Shows as well that a planted panic, a planted allocation and one changed bit are found.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -11,7 +12,8 @@ flock 8
 firmware/setup.sh
 source "$build/env"
 target=thumbv7em-none-eabihf
-max_flash=98304
+max_flash=98304 # of the M4F with the policy in f32
+max_soft_flash=131072
 max_ram=16384
 
 unset RUSTFLAGS
@@ -20,8 +22,9 @@ cargo=(cargo --config net.retry=3)
 workspace=firmware/cortex-m/Cargo.toml
 
 # The host's side: observations, and its decisions.
-mkdir -p "$build/golden" "$build/tampered"
+mkdir -p "$build/golden" "$build/golden-i16" "$build/tampered"
 "${cargo[@]}" run --locked --release --manifest-path $workspace --target-dir "$build/host" -p cede-golden -- "$build/golden"
+"$build/host/release/cede-golden" "$build/golden-i16" i16
 
 # Lints see the host's build of the same code: they need no target, and nothing is linked.
 if "${cargo[@]}" clippy --version >/dev/null 2>&1; then
@@ -29,21 +32,29 @@ if "${cargo[@]}" clippy --version >/dev/null 2>&1; then
 fi
 
 linker=$(rustc --print sysroot)/lib/rustlib/$(rustc --print host-tuple)/bin/rust-lld
-export CARGO_TARGET_THUMBV7EM_NONE_EABIHF_LINKER=$linker
-export CARGO_TARGET_THUMBV7EM_NONE_EABIHF_RUSTFLAGS="-C link-arg=-Tlink.x $target_flags"
 
-# image GOLDEN_FOLDER [cargo options]: builds the image and prints where it is.
+# image TARGET GOLDEN_FOLDER [cargo options]: builds the image and prints where it is.
 image() {
-    local golden=$1
-    shift
+    local target=$1 golden=$2 script=link.x variable
+    shift 2
+    [[ $target = thumb* ]] || script=riscv.x
+    variable=CARGO_TARGET_$(tr 'a-z-' 'A-Z_' <<<"$target")
+    export "${variable}_LINKER=$linker" "${variable}_RUSTFLAGS=-C link-arg=-T$script $target_flags"
     [ -z "$target_compiler" ] || export RUSTC=$target_compiler
     CEDE_GOLDEN=$golden "${cargo[@]}" build --locked --release --manifest-path $workspace \
-        --target-dir "$build/target" --target $target -p cede-cortex-m "$@" >&2 || return
+        --target-dir "$build/target" --target "$target" -p cede-cortex-m "$@" >&2 || return
     echo "$build/target/$target/release/cede-cortex-m"
 }
+# run IMAGE [MACHINE] [SHIFT]: an instruction takes 2^SHIFT ns, as `Clock` in the image has it.
 run() {
-    timeout 120 qemu-system-arm -machine mps2-an386 -nographic -icount shift=10 \
-        -semihosting-config enable=on,target=native -kernel "$1" </dev/null
+    local machine=${2:-mps2-an386} shift=${3:-10}
+    if [ "$machine" = virt ]; then
+        timeout 300 qemu-system-riscv32 -machine virt -bios none -nographic -monitor none -serial stdio \
+            -icount shift="$shift" -kernel "$1" </dev/null
+    else
+        timeout 300 qemu-system-arm -machine "$machine" -nographic -icount shift="$shift" \
+            -semihosting-config enable=on,target=native -kernel "$1" </dev/null
+    fi
 }
 # Panicking, formatting and allocating leave these names behind.
 forbidden() { arm-none-eabi-nm -C "$1" | grep -E 'panic|core::fmt|alloc::|__rust_alloc|__rg_alloc'; }
@@ -53,12 +64,12 @@ fail() {
 }
 
 echo "== the checks can fail"
-if elf=$(image "$build/golden" --features planted-panic 2>"$build/log"); then
+if elf=$(image $target "$build/golden" --features planted-panic 2>"$build/log"); then
     fail "an image with a planted panic links"
 fi
 grep -q cede_a_panic_is_reachable "$build/log" || { cat "$build/log" >&2; fail "the planted panic broke something else"; }
 echo "a planted panic does not link"
-elf=$(image "$build/golden" --features planted-allocation)
+elf=$(image $target "$build/golden" --features planted-allocation)
 forbidden "$elf" >/dev/null || fail "a planted allocation is not found"
 echo "a planted allocation is found"
 cp "$build"/golden/* "$build/tampered"
@@ -66,29 +77,41 @@ size=$(stat -c %s "$build/golden/golden.bin")
 last=$(tail -c 1 "$build/golden/golden.bin" | od -An -tu1)
 # shellcheck disable=SC2059
 printf "\\x$(printf %x $((last ^ 1)))" | dd of="$build/tampered/golden.bin" bs=1 seek=$((size - 1)) conv=notrunc status=none
-elf=$(image "$build/tampered")
+elf=$(image $target "$build/tampered")
 if run "$elf" >"$build/log"; then
     fail "one changed bit in the golden decisions is not found"
 fi
 grep -q "differ from the host's: 1$" "$build/log" || { cat "$build/log" >&2; fail "the changed bit broke something else"; }
 echo "one changed bit is found"
 
-echo "== Cortex-M4F (mps2-an386)"
-elf=$(image "$build/golden")
-if forbidden "$elf"; then
-    fail "a panic or an allocation is linked"
-fi
-run "$elf" | tee "$build/log" || fail "the image failed"
+# on NAME TARGET MACHINE SHIFT GOLDEN MOST_FLASH [cargo options]: the image decides as the host does, within the bars.
+on() {
+    local name=$1 target=$2 machine=$3 shift=$4 golden=$5 most=$6 elf flash ram
+    shift 6
+    echo "== $name ($target on $machine)"
+    elf=$(image "$target" "$build/$golden" "$@")
+    if forbidden "$elf"; then
+        fail "a panic or an allocation is linked"
+    fi
+    run "$elf" "$machine" "$shift" | tee "$build/log" || fail "the image failed"
+    # Everything in flash but the golden file: vectors, code, constants, weights, initial values.
+    flash=$(arm-none-eabi-size -A "$elf" | awk '$1 ~ /^\.(vector_table|text|rodata|data|gnu\.sgstubs)$/ { sum += $2 } END { print sum }')
+    echo "flash with weights, bytes: $flash (of $most)"
+    [ "$flash" -le "$most" ] || fail "more than $most bytes of flash"
+    for ram in "$(value "RAM to decide, bytes")" "$(value "RAM to prepare a junction, bytes")"; do
+        [ "$ram" -le $max_ram ] || fail "more than $max_ram bytes of RAM"
+    done
+}
 value() { sed -n "s/^$1: //p" "$build/log"; }
-# Everything in flash but the golden file: vectors, code, constants, weights, initial values.
-flash=$(arm-none-eabi-size -A "$elf" | awk '$1 ~ /^\.(vector_table|text|rodata|data|gnu\.sgstubs)$/ { sum += $2 } END { print sum }')
-ram=$(value "RAM to decide, bytes")
-preparing=$(value "RAM to prepare a junction, bytes")
-echo "flash with weights, bytes: $flash (of $max_flash)"
+
+on "Cortex-M4F, f32" $target mps2-an386 10 golden $max_flash
 network=$(value "instructions of the network, most")
 echo "network 22-48-48-48-4, instructions for each of its 2 x 5,856 multiplications and additions: $(awk "BEGIN { printf \"%.2f\", $network / 11712 }")"
-[ "$flash" -le $max_flash ] || fail "more than $max_flash bytes of flash"
-[ "$ram" -le $max_ram ] || fail "more than $max_ram bytes of RAM to decide"
-[ "$preparing" -le $max_ram ] || fail "more than $max_ram bytes of RAM to prepare a junction"
+on "rv32imafc, f32" riscv32imafc-unknown-none-elf virt 0 golden $max_soft_flash
+on "Cortex-M4F, i16" $target mps2-an386 10 golden-i16 $max_flash --features i16
+on "Cortex-M3, i16" thumbv7m-none-eabi mps2-an385 6 golden-i16 $max_soft_flash --features i16
+# The M3 executes every instruction of the M0+; QEMU has no machine with an M0+ and enough flash.
+on "Cortex-M0+, i16" thumbv6m-none-eabi mps2-an385 6 golden-i16 $max_soft_flash --features i16
+on "rv32imac, i16" riscv32imac-unknown-none-elf virt 0 golden-i16 $max_soft_flash --features i16
 
 firmware/capi/check.sh

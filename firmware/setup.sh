@@ -14,8 +14,9 @@ cd "$(dirname "$0")/.."
 lane=${1:-cortex-m}
 build=$PWD/.build/$lane
 case $lane in
-    cortex-m) target=thumbv7em-none-eabihf core_options=(--cfg thumb) ;;
-    wasm) target=wasm32-unknown-unknown core_options=() ;;
+    cortex-m) targets=(thumbv7em-none-eabihf thumbv7m-none-eabi thumbv6m-none-eabi
+        riscv32imafc-unknown-none-elf riscv32imac-unknown-none-elf) ;;
+    wasm) targets=(wasm32-unknown-unknown) ;;
     *) echo "usage: firmware/setup.sh [cortex-m|wasm]" >&2 && exit 2 ;;
 esac
 rust_version=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)
@@ -25,7 +26,10 @@ fail() {
     echo "firmware/setup.sh: $*" >&2
     exit 1
 }
-has_target() { [ -d "$(rustc --print target-libdir --target $target 2>/dev/null)" ]; }
+has_targets() {
+    local target
+    for target in "${targets[@]}"; do [ -d "$(rustc --print target-libdir --target "$target" 2>/dev/null)" ] || return; done
+}
 at_least() { printf '%s\n%s\n' "$1" "$2" | sort -VC; } # WANTED VERSION
 
 # One set-up at a time; the others wait. What a killed one has left is removed.
@@ -37,9 +41,10 @@ new=$(mktemp -d "$build/new.XXXXXX")
 trap 'rm -rf "$new"' EXIT
 
 packages=()
-has_target || packages+=(rustc-web rust-web-src)
+has_targets || packages+=(rustc-web rust-web-src)
 if [ $lane = cortex-m ]; then
     command -v qemu-system-arm >/dev/null || packages+=(qemu-system-arm)
+    command -v qemu-system-riscv32 >/dev/null || packages+=(qemu-system-misc)
     command -v arm-none-eabi-nm >/dev/null || packages+=(binutils-arm-none-eabi)
     command -v arm-none-eabi-gcc >/dev/null || packages+=(gcc-arm-none-eabi) # for the example in C; without a C library
 fi
@@ -51,8 +56,8 @@ apt=(-o "Dir::State::lists=$new/lists" -o "Dir::Cache=$new/cache" -o APT::Sandbo
 # fetch: downloads the packages, checks their versions, unpacks them as $build/tools+NAME=VERSION+...
 fetch() {
     command -v apt-get >/dev/null && [ "$(id -u)" = 0 ] || fail "${packages[*]} are missing, and only root on" \
-        "Debian can unpack them here; the target comes with: rustup target add $target;" \
-        "cortex-m needs QEMU for Arm, GNU binutils and GCC for arm-none-eabi, too"
+        "Debian can unpack them here; the targets come with: rustup target add ${targets[*]};" \
+        "cortex-m needs QEMU for Arm and RISC-V, GNU binutils and GCC for arm-none-eabi, too"
     echo "fetching ${packages[*]}"
     mkdir -p "$new/lists/partial" "$new/cache/archives/partial" "$new/tools/bin"
     apt-get -qq "${apt[@]}" update >/dev/null
@@ -69,7 +74,8 @@ fetch() {
     local deb
     for deb in "$new"/cache/archives/*.deb; do dpkg -x "$deb" "$new/tools"; done
     wrap cortex-rustc rustc
-    wrap qemu-system-arm qemu-system-arm -L '"$root/usr/share/qemu"'
+    local core
+    for core in arm riscv32; do wrap qemu-system-$core qemu-system-$core -L '"$root/usr/share/qemu"'; done
     for package in nm size objdump objcopy ld ar as gcc; do wrap arm-none-eabi-$package arm-none-eabi-$package; done
     works "$new/tools" || fail "what was unpacked does not start"
 
@@ -91,7 +97,7 @@ check_rust() {
     done
     [ "$compiler" = "$sources" ] || fail "rustc-web is $compiler but rust-web-src is $sources"
     [ -z "$compiler" ] || at_least "$rust_version" "$compiler" || fail "Cede needs Rust $rust_version," \
-        "the package index has rustc-web $compiler; with rustup: rustup target add $target"
+        "the package index has rustc-web $compiler; with rustup: rustup target add ${targets[*]}"
 }
 
 # wrap NAME PROGRAM [OPTIONS]: a script that starts an unpacked program with the libraries beside it.
@@ -125,9 +131,10 @@ unpacked() {
     done
 }
 
-# Debian has no core for this target: it is built once, from the same version's sources.
+# build_core TARGET: Debian has no core for it; it is built once, from the same version's sources.
 build_core() {
-    local compiler=$tools/bin/cortex-rustc version library lib=$new/sysroot/lib/rustlib/$target/lib
+    local target=$1 compiler=$tools/bin/cortex-rustc version library lib=$new/sysroot/lib/rustlib/$1/lib core_options=()
+    [[ $target != thumb* ]] || core_options=(--cfg thumb)
     version=$("$compiler" --version | cut -d' ' -f2)
     library=$tools/usr/src/rustc-$version/library
     echo "building core $version for $target"
@@ -145,16 +152,17 @@ build_core() {
     core --crate-name compiler_builtins "${features[@]}" "${core_options[@]}" --cfg f16_enabled --cfg f128_enabled \
         --cfg intrinsics_enabled --cfg arch_enabled --cfg optimizations_enabled \
         "$library/compiler-builtins/compiler-builtins/src/lib.rs"
-    compiles "$new/sysroot" || fail "the core that was built is of no use: $(cat "$new/log")"
-    rm -rf "$sysroot"
-    mv "$new/sysroot" "$sysroot"
+    compiles "$new/sysroot" "$target" || fail "the core that was built is of no use: $(cat "$new/log")"
+    rm -rf "$sysroot/lib/rustlib/$target"
+    mkdir -p "$sysroot/lib/rustlib"
+    mv "$new/sysroot/lib/rustlib/$target" "$sysroot/lib/rustlib/$target"
 }
 
-# compiles SYSROOT: its core is whole. A static library takes in every object of core and compiler_builtins.
+# compiles SYSROOT TARGET: its core is whole. A static library takes in every object of core and compiler_builtins.
 compiles() {
-    [ -d "$1" ] || return
+    [ -d "$1/lib/rustlib/$2" ] || return
     echo '#![no_std] #[panic_handler] fn panic(_: &core::panic::PanicInfo) -> ! { loop {} }' |
-        "$tools/bin/cortex-rustc" --crate-name probe --crate-type staticlib --target $target --sysroot "$1" \
+        "$tools/bin/cortex-rustc" --crate-name probe --crate-type staticlib --target "$2" --sysroot "$1" \
             -C panic=abort -o "$new/probe.a" - >"$new/log" 2>&1
 }
 
@@ -163,10 +171,10 @@ if [ ${#packages[@]} -gt 0 ]; then
     tools=$(unpacked)
     [ -n "$tools" ] || fetch
 fi
-if ! has_target; then
+if ! has_targets; then
     compiler=$tools/bin/cortex-rustc
     sysroot=$tools/sysroot
-    compiles "$sysroot" || build_core
+    for target in "${targets[@]}"; do compiles "$sysroot" "$target" || build_core "$target"; done
     flags=--sysroot=$sysroot
 fi
 

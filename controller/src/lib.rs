@@ -114,8 +114,8 @@ pub use junction::{
 };
 pub use observation::{Candidate, MAX_CANDIDATES, Observation, Sight, Track, Vehicle};
 pub use policy::{
-    Crosser, FeatureSet, Leader, Mlp, NearbyVehicle, Pair, Part, Perspective, Policy,
-    TrafficContext, VehicleState, Weights, WeightsError,
+    Crosser, FeatureSet, FixedMlp, Leader, Mlp, NearbyVehicle, Network, Pair, Part, Perspective,
+    Policy, TrafficContext, VehicleState, Weights, WeightsError,
 };
 pub use real::{Elementary, Real};
 pub use separation::OrientedBox;

@@ -54,10 +54,16 @@ impl Layer {
     }
 }
 
+/// The policy's network computes in integers, and `f32` is wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the network is one of integers; give the policy in f32 that it was made of")]
+pub struct NotF32;
+
 /// The four layers of a policy, all outputs included.
-pub(crate) fn of(weights: &Weights<'_>) -> [Layer; 4] {
-    weights.network().layers().map(|layer| Layer {
+pub(crate) fn of(weights: &Weights<'_>) -> Result<[Layer; 4], NotF32> {
+    let network = weights.network().as_f32().ok_or(NotF32)?;
+    Ok(network.layers().map(|layer| Layer {
         weights: layer.weights().collect(),
         biases: layer.biases().collect(),
-    })
+    }))
 }

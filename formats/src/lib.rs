@@ -2,8 +2,8 @@
 //!
 //! [`onnx`] reads networks that were trained elsewhere. With the feature `policy`, which is on by
 //! default, it also writes a policy as a graph that any runtime executes and makes a policy of a
-//! graph; [`cede`] loads weights files, [`safetensors`] writes the bare numbers, [`description`]
-//! is what these files say about a policy, and [`property`] is what is to be proved of one.
+//! graph; [`cede`] loads weights files, [`quantise`] makes integers of one, [`safetensors`] writes the bare
+//! numbers, [`description`] is what these files say about a policy, and [`property`] is what is to be proved of one.
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "policy")]
@@ -16,4 +16,9 @@ pub mod onnx;
 #[cfg(feature = "policy")]
 pub mod property;
 #[cfg(feature = "policy")]
+pub mod quantise;
+#[cfg(feature = "policy")]
 pub mod safetensors;
+
+#[cfg(feature = "policy")]
+pub use layers::NotF32;

@@ -11,27 +11,34 @@
 //! before squashing, which training alone uses. The one metadata entry, `cede`, is a JSON object: feature set,
 //! names of the features, perspective, provenance.
 
+use crate::layers::NotF32;
 use crate::{description, layers};
 use ::safetensors::tensor::{Dtype, SafeTensorError, TensorView};
 use cede_controller::Weights;
 use std::collections::BTreeMap;
 
-/// The format cannot hold the policy (it can hold every one that there is).
+/// A policy cannot be written as safetensors.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot be written as safetensors: {0}")]
-pub struct SafetensorsError(#[from] SafeTensorError);
+pub enum SafetensorsError {
+    /// The format cannot hold it, which is known of no policy.
+    #[error("cannot be written as safetensors: {0}")]
+    Format(#[from] SafeTensorError),
+    /// Its network is one of integers.
+    #[error(transparent)]
+    NotF32(#[from] NotF32),
+}
 
 /// The file's bytes; the same policy gives the same bytes.
 ///
 /// # Errors
-/// The library's, which no policy is known to cause.
+/// If the network is one of integers; the library's, which no policy is known to cause.
 pub fn write(weights: &Weights<'_>) -> Result<Vec<u8>, SafetensorsError> {
     let (centres, scales): (Vec<f32>, Vec<f32>) = weights.normalisation().unzip();
     let mut tensors = vec![
         tensor("normalisation.centre", vec![centres.len()], centres),
         tensor("normalisation.scale", vec![scales.len()], scales),
     ];
-    for (i, layer) in layers::of(weights).into_iter().enumerate() {
+    for (i, layer) in layers::of(weights)?.into_iter().enumerate() {
         let (inputs, outputs) = (layer.inputs(), layer.outputs());
         let transposed = (0..inputs * outputs)
             .map(|at| layer.weights[at % inputs * outputs + at / inputs])
@@ -82,7 +89,14 @@ mod tests {
         let (centres, scales): (Vec<f32>, Vec<f32>) = weights.normalisation().unzip();
         assert_eq!(numbers("normalisation.centre"), centres);
         assert_eq!(numbers("normalisation.scale"), scales);
-        for (i, layer) in weights.network().layers().into_iter().enumerate() {
+        for (i, layer) in weights
+            .network()
+            .as_f32()
+            .unwrap()
+            .layers()
+            .into_iter()
+            .enumerate()
+        {
             let biases: Vec<f32> = layer.biases().collect();
             assert_eq!(numbers(&format!("layers.{i}.bias")), biases);
             let rows = numbers(&format!("layers.{i}.weight"));

@@ -22,7 +22,7 @@ type Result<T> = std::result::Result<T, Box<dyn Error>>;
 fn main() -> Result<()> {
     let words = policy()?;
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
-    let graph = onnx::export(&Weights::parse(&words)?);
+    let graph = onnx::export(&Weights::parse(&words)?)?;
     write("weights/narrow.cede", &bytes)?;
     write("policy_onnx/narrow.onnx", &graph)?;
     write("network_onnx/narrow.onnx", &graph)?;

@@ -11,7 +11,7 @@ use std::error::Error;
 fn main() -> Result<(), Box<dyn Error>> {
     let bytes = match std::env::args().nth(1) {
         Some(path) => std::fs::read(path)?,
-        None => onnx::export(Policy::new(cede_controller::policy::embedded::words())?.weights()),
+        None => onnx::export(Policy::new(cede_controller::policy::embedded::words())?.weights())?,
     };
     // From here on, ten lines for a test of your own.
     let words = onnx::import(&bytes, onnx::Told::default())?;

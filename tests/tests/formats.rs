@@ -83,7 +83,7 @@ fn the_verifier_reads_the_export_as_the_controller_drives_it() {
     let pairs = pairs();
     for words in policies() {
         let policy = Policy::new(&words).unwrap();
-        let bytes = onnx::export(policy.weights());
+        let bytes = onnx::export(policy.weights()).unwrap();
         let network = cede_nnv_check::onnx::read(&bytes).unwrap();
         for pair in pairs.iter().step_by(10) {
             let raw = features(policy.weights(), pair);
@@ -120,7 +120,7 @@ fn onnxruntime_gives_the_controllers_accelerations() {
         let policy = Policy::new(&words).unwrap();
         let rows = pairs.iter().flat_map(|p| features(policy.weights(), p));
         let rows: Vec<u8> = rows.flat_map(f32::to_le_bytes).collect();
-        std::fs::write(&model, onnx::export(policy.weights())).unwrap();
+        std::fs::write(&model, onnx::export(policy.weights()).unwrap()).unwrap();
         std::fs::write(&told, rows).unwrap();
         let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/run_policy.py");
         let mut run = Command::new(&python);

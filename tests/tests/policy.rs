@@ -20,7 +20,14 @@ fn changed(change: impl Fn(usize, &mut [f32], &mut [f32])) -> Vec<u32> {
     let weights = Weights::parse(embedded::words()).unwrap();
     let mut parameters = Vec::new();
     let mut width = 0;
-    for (number, layer) in weights.network().layers().iter().enumerate() {
+    for (number, layer) in weights
+        .network()
+        .as_f32()
+        .unwrap()
+        .layers()
+        .iter()
+        .enumerate()
+    {
         let mut biases: Vec<f32> = layer.biases().collect();
         let mut columns: Vec<f32> = layer.weights().collect();
         change(number, &mut biases, &mut columns);

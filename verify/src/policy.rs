@@ -10,12 +10,14 @@
 //! function; what the controller computes differs from that by no more than the stated rounding.
 
 mod check;
+mod departure;
 mod enclosure;
 mod features;
 mod gradient;
 mod response;
 mod search;
 
+pub use departure::{Departure, NotItsOwn};
 pub(crate) use response::Response;
 pub use search::{Finding, Settled};
 
@@ -31,25 +33,34 @@ pub struct Subject<'a> {
     normalisation: Vec<(f32, f32)>,
 }
 
-/// The policy's features are not functions of the state that properties speak of.
+/// Nothing can be proved of a policy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "properties need a network over the features `route`, `traffic`, `scene` or `rights`, not `raw`"
-)]
-pub struct UnsupportedFeatures;
+pub enum Unsupported {
+    /// Its features are not functions of the state that properties speak of.
+    #[error(
+        "properties need a network over the features `route`, `traffic`, `scene` or `rights`, not `raw`"
+    )]
+    Features,
+    /// Its network is one of integers.
+    #[error(
+        "properties are proved of networks in f32; `cede verify departure` says how far one of integers is from its own"
+    )]
+    Integers,
+}
 
 impl<'a> Subject<'a> {
     /// The policy of a weights file, in the part of the left-turner where it is a joint one.
     ///
     /// # Errors
-    /// If its features are not of the route, as the paper's raw ones are not.
-    pub fn new(weights: Weights<'a>) -> Result<Self, UnsupportedFeatures> {
+    /// If its features are not of the route, as the paper's raw ones are not, or its network is one of integers.
+    pub fn new(weights: Weights<'a>) -> Result<Self, Unsupported> {
         let (FeatureSet::Route | FeatureSet::Traffic | FeatureSet::Scene | FeatureSet::Rights) =
             weights.features()
         else {
-            return Err(UnsupportedFeatures);
+            return Err(Unsupported::Features);
         };
-        let dense = weights.network().layers();
+        let network = weights.network().as_f32();
+        let dense = network.ok_or(Unsupported::Integers)?.layers();
         let layers = dense.iter().enumerate().map(|(index, layer)| {
             let last = index + 1 == dense.len();
             let (biases, columns): (Vec<f32>, Vec<f32>) =
@@ -76,7 +87,7 @@ impl<'a> Subject<'a> {
         });
         let layers = layers.collect();
         let network =
-            Network::new(weights.features().count(), layers).map_err(|_| UnsupportedFeatures)?;
+            Network::new(weights.features().count(), layers).map_err(|_| Unsupported::Features)?;
         let normalisation = weights.normalisation().collect();
         Ok(Self {
             weights,

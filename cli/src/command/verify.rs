@@ -5,10 +5,11 @@ mod beyond;
 mod campaign;
 mod check;
 mod checked;
+mod departure;
 mod lemmas;
 mod margins;
 mod network;
-mod policy;
+pub(crate) mod policy;
 mod reach;
 mod shield;
 mod zones;
@@ -34,6 +35,8 @@ pub(crate) enum Verify {
     Network(network::Network),
     /// Does the policy have its claimed properties?
     Policy(policy::Policy),
+    /// How far can the policy of integers be from the one in f32?
+    Departure(departure::Departure),
     /// Which states can policy, shield and kinematics reach in an encounter?
     Reach(reach::Reach),
     /// How far can rounding move the shield's margins?
@@ -59,6 +62,7 @@ impl Verify {
             Self::All(all) => all.run(),
             Self::Network(network) => network.run(),
             Self::Policy(policy) => policy.run(),
+            Self::Departure(departure) => departure.run(),
             Self::Reach(reach) => reach.run(),
             Self::Margins(margins) => margins.run(),
             Self::Zones(zones) => zones.run(),

@@ -3,6 +3,7 @@
 #[cfg(feature = "embedded-policy")]
 pub mod embedded;
 pub mod features;
+pub mod fixed;
 pub mod mlp;
 pub(crate) mod pair;
 pub mod svo;
@@ -10,10 +11,11 @@ pub(crate) mod traffic;
 pub mod weights;
 
 pub use features::FeatureSet;
+pub use fixed::FixedMlp;
 pub use mlp::Mlp;
 pub use pair::{Crosser, Leader, Pair, Part, VehicleState};
 pub use traffic::{NearbyVehicle, TrafficContext};
-pub use weights::{Perspective, Weights, WeightsError};
+pub use weights::{Network, Perspective, Weights, WeightsError};
 
 #[cfg(doc)]
 use crate::policy::features::LIMIT;

@@ -216,6 +216,10 @@ enum cede_status
      */
     CEDE_STATUS_WEIGHTS_NOT_EMBEDDED = 25,
     /**
+     * A sum of a network of integers could exceed 32 bits.
+     */
+    CEDE_STATUS_WEIGHTS_OVERFLOW = 26,
+    /**
      * A number of the contract is out of its range.
      */
     CEDE_STATUS_CONTRACT_OUT_OF_RANGE = 30,

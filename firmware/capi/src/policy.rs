@@ -135,6 +135,7 @@ impl From<WeightsError> for cede_status {
             WeightsError::Unknown => Self::WeightsUnknown,
             WeightsError::Shape => Self::WeightsShape,
             WeightsError::OutOfRange => Self::WeightsOutOfRange,
+            WeightsError::Overflow => Self::WeightsOverflow,
             _ => Self::Other,
         }
     }

@@ -43,6 +43,8 @@ pub enum cede_status {
     WeightsOutOfRange = 24,
     /// This library was built without the embedded policy.
     WeightsNotEmbedded = 25,
+    /// A sum of a network of integers could exceed 32 bits.
+    WeightsOverflow = 26,
 
     /// A number of the contract is out of its range.
     ContractOutOfRange = 30,
@@ -172,6 +174,10 @@ pub(crate) const STATUS: &[(i32, &CStr)] = &[
     (
         cede_status::WeightsNotEmbedded as i32,
         c"built without the embedded policy",
+    ),
+    (
+        cede_status::WeightsOverflow as i32,
+        c"a sum of the integer network could exceed 32 bits",
     ),
     (
         cede_status::ContractOutOfRange as i32,

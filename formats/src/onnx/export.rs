@@ -4,6 +4,7 @@ use super::proto::{
     Dimension, Entry, Graph, Model, Node, OperatorSet, Shape, Tensor, TensorType, Type, ValueInfo,
 };
 use super::tensor::FLOAT;
+use crate::layers::NotF32;
 use crate::{description, layers};
 use cede_controller::Weights;
 use cede_controller::policy::MAX_ACCELERATION;
@@ -21,8 +22,10 @@ const DOC: &str = "Accelerations (m/s²) within ± 3 from the raw features that 
     SI units. A feature that is not a number is not caught here, as Cede's controller does.";
 
 /// The file's bytes; the same policy gives the same bytes. Never panics.
-#[must_use]
-pub fn export(weights: &Weights<'_>) -> Vec<u8> {
+///
+/// # Errors
+/// If the network is one of integers.
+pub fn export(weights: &Weights<'_>) -> Result<Vec<u8>, NotF32> {
     let entry = |(key, value): (&str, String)| Entry {
         key: key.to_owned(),
         value,
@@ -32,17 +35,17 @@ pub fn export(weights: &Weights<'_>) -> Vec<u8> {
         producer_name: "cede".to_owned(),
         producer_version: env!("CARGO_PKG_VERSION").to_owned(),
         doc_string: DOC.to_owned(),
-        graph: Some(graph(weights)),
+        graph: Some(graph(weights)?),
         opset_import: vec![OperatorSet {
             domain: String::new(),
             version: OPERATORS,
         }],
         metadata_props: description::of(weights).map(entry).into(),
     };
-    model.encode_to_vec()
+    Ok(model.encode_to_vec())
 }
 
-fn graph(weights: &Weights<'_>) -> Graph {
+fn graph(weights: &Weights<'_>) -> Result<Graph, NotF32> {
     let (centres, scales): (Vec<f32>, Vec<f32>) = weights.normalisation().unzip();
     let inputs = centres.len();
     let mut chain = Chain::from("features");
@@ -50,7 +53,7 @@ fn graph(weights: &Weights<'_>) -> Graph {
     chain.apply("Mul", "scaled", [tensor("scale", &[inputs], &scales)]);
     let limits = [tensor("low", &[], &[-LIMIT]), tensor("high", &[], &[LIMIT])];
     chain.apply("Clip", "limited", limits);
-    let [first, second, third, last] = layers::of(weights);
+    let [first, second, third, last] = layers::of(weights)?;
     for (i, layer) in [first, second, third, last.narrowed(COMMANDS)]
         .iter()
         .enumerate()
@@ -69,13 +72,13 @@ fn graph(weights: &Weights<'_>) -> Graph {
     chain.apply("Mul", "acceleration", [most]);
 
     let labels: Vec<_> = weights.features().labels().collect();
-    Graph {
+    Ok(Graph {
         name: "policy".to_owned(),
         node: chain.nodes,
         initializer: chain.constants,
         input: vec![value("features", inputs, labels.join(", "))],
         output: vec![value("acceleration", COMMANDS, "m/s²".to_owned())],
-    }
+    })
 }
 
 /// Nodes, each of which takes what the one before it gives.

@@ -50,7 +50,7 @@ fn what_is_exported_comes_back_with_the_bits_of_its_outputs() {
     for features in FeatureSet::ALL {
         for (perspective, width) in [(Perspective::Joint, 16), (Perspective::Ego, 48)] {
             let words = policy(features, perspective, width);
-            let bytes = export(&Weights::parse(&words).unwrap());
+            let bytes = export(&Weights::parse(&words).unwrap()).unwrap();
             let back = import(&bytes, Told::default()).unwrap();
             let weights = Weights::parse(&back).unwrap();
             assert_eq!(weights.features(), features);

@@ -37,7 +37,7 @@ pub(super) fn gradient(
 
 /// The row of intervals times a matrix: middles and radii, with what rounding may cost added to
 /// the radii.
-fn through<'a>(
+pub(super) fn through<'a>(
     row: &[Interval],
     weights: impl Fn(usize) -> &'a [f64],
     inputs: usize,

@@ -121,7 +121,7 @@ impl<'a> Response<'a> {
 }
 
 /// The feature's range on a box.
-fn range(feature: &AffineEnclosure, region: &InputBox) -> Interval {
+pub(super) fn range(feature: &AffineEnclosure, region: &InputBox) -> Interval {
     let sides = region.lower.iter().zip(&region.upper);
     feature
         .slopes

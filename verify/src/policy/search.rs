@@ -389,7 +389,18 @@ fn middle(region: &InputBox) -> Vec<f64> {
 /// Halves the box across the variable with the highest score. Boxes narrower than a micrometre
 /// (or micrometre per second) everywhere are not divided.
 fn halve(node: &Node, scores: &[f64]) -> Option<(Split, [Node; 2])> {
-    let InputBox { lower, upper } = &node.region;
+    let (split, halves) = halve_region(&node.region, scores)?;
+    let half = |region| Node {
+        region,
+        bounds: node.bounds.clone(),
+        cell: 0,
+    };
+    Some((split, halves.map(half)))
+}
+
+/// The cut and the halves' boxes.
+pub(super) fn halve_region(region: &InputBox, scores: &[f64]) -> Option<(Split, [InputBox; 2])> {
+    let InputBox { lower, upper } = region;
     let width = |i: usize| upper[i] - lower[i];
     let better = |&a: &usize, &b: &usize| {
         scores[a]
@@ -401,19 +412,12 @@ fn halve(node: &Node, scores: &[f64]) -> Option<(Split, [Node; 2])> {
         .filter(|&i| width(i) > 1e-6)
         .max_by(better)?;
     let at = 0.5 * (lower[input] + upper[input]);
-    let (mut below, mut above) = (node.region.clone(), node.region.clone());
+    let (mut below, mut above) = (region.clone(), region.clone());
     below.upper[input] = at;
     above.lower[input] = at;
-    let half = |region| Node {
-        region,
-        bounds: node.bounds.clone(),
-        cell: 0,
+    let split = Split::Input {
+        input: u32::try_from(input).ok()?,
+        at,
     };
-    Some((
-        Split::Input {
-            input: u32::try_from(input).ok()?,
-            at,
-        },
-        [half(below), half(above)],
-    ))
+    Some((split, [below, above]))
 }

@@ -12,6 +12,25 @@ const WIDTH: usize = 16;
 
 /// The words of a weights file with these parameters, normalised as a trained one might be.
 fn file(features: FeatureSet, parameters: &[f32]) -> Vec<u32> {
+    drafted(features, parameters, |draft, words| {
+        draft.encode(words).expect("a draft that fits");
+    })
+}
+
+/// The same in integers.
+fn file_i16(features: FeatureSet, parameters: &[f32]) -> Vec<u32> {
+    drafted(features, parameters, |draft, words| {
+        draft
+            .encode_i16([12, 10, 8, 7], words)
+            .expect("a draft that fits");
+    })
+}
+
+fn drafted(
+    features: FeatureSet,
+    parameters: &[f32],
+    encode: impl FnOnce(&Draft<'_>, &mut [u32]),
+) -> Vec<u32> {
     let count = features.count();
     let all_scales = [
         0.05, 0.1, 0.05, 0.1, 0.2, 0.2, 0.6, 0.05, 0.05, 1.0, 1.0, 1.0, 1.0, 1.0, 0.1, 0.1, 0.1,
@@ -32,7 +51,7 @@ fn file(features: FeatureSet, parameters: &[f32]) -> Vec<u32> {
     };
     let mut words = vec![0; 4000];
     let length = {
-        draft.encode(&mut words).expect("a draft that fits");
+        encode(&draft, &mut words);
         words.iter().rposition(|&w| w != 0).map_or(0, |i| i + 1)
     };
     words.truncate(length);
@@ -40,11 +59,14 @@ fn file(features: FeatureSet, parameters: &[f32]) -> Vec<u32> {
 }
 
 fn random_file(features: FeatureSet, seed: u64) -> Vec<u32> {
+    file(features, &random_parameters(features, seed))
+}
+
+fn random_parameters(features: FeatureSet, seed: u64) -> Vec<f32> {
     let mut random = Pcg64::seed_from_u64(seed);
-    let parameters: Vec<f32> = (0..Mlp::words(features.count(), WIDTH))
+    (0..Mlp::words(features.count(), WIDTH))
         .map(|_| 0.7 * (2.0 * random.random::<f32>() - 1.0))
-        .collect();
-    file(features, &parameters)
+        .collect()
 }
 
 /// A policy whose mean is gain·(1 + the normalised other's distance) − 1.
@@ -158,6 +180,51 @@ fn a_policy_that_yields_is_told_from_one_with_a_flipped_sign() {
     assert!(refuted(&bad, Claim::RisesAtLeast { with, slope: 0.0 }));
     assert!(refuted(&good, Claim::AccelerationAtMost(-1.3)));
     assert!(refuted(&good, Claim::ChangesAtMost { with, slope: 0.05 }));
+}
+
+#[test]
+fn a_policy_of_integers_stays_within_its_departure() {
+    let limit = Duration::from_millis(300);
+    for seed in 1..=4 {
+        let parameters = random_parameters(FeatureSet::Rights, seed);
+        let floats = file(FeatureSet::Rights, &parameters);
+        let integers = file_i16(FeatureSet::Rights, &parameters);
+        let weights = |file| Weights::parse(file).expect("a sound file");
+        let subject = Subject::new(weights(&floats)).expect("features of the state");
+        let property = property(Claim::AccelerationAtMost(0.0));
+        let properties = std::slice::from_ref(&property);
+        let found = subject.departure(weights(&integers), properties, 0.01, limit);
+        let found = found.expect("its own");
+        assert!(
+            found.sampled > 0.0 && found.sampled <= found.bound,
+            "{found:?}"
+        );
+        let mut random = Pcg64::seed_from_u64(seed);
+        let region = region(&property);
+        for setting in property.settings() {
+            for _ in 0..5_000 {
+                let state = std::array::from_fn(|i| {
+                    region.lower[i] + random.random::<f64>() * (region.upper[i] - region.lower[i])
+                });
+                let pair = setting.pair(state);
+                let of = |file| f64::from(Policy::from(weights(file)).act(&pair)[0]);
+                let apart = (of(&floats) - of(&integers)).abs();
+                assert!(apart <= found.bound, "{apart} at {state:?}, {found:?}");
+            }
+        }
+        // Of another policy nothing small is proved, and one in f32 is none of integers.
+        let mut others = parameters.clone();
+        others[20] += 0.05;
+        let others = file_i16(FeatureSet::Rights, &others);
+        let far = subject.departure(weights(&others), properties, 0.01, limit);
+        assert!(far.expect("of the same shape").bound > found.bound);
+        let none = subject.departure(weights(&floats), properties, 0.01, limit);
+        assert_eq!(none, Err(NotItsOwn::NotIntegers));
+        assert_eq!(
+            Subject::new(weights(&integers)).err(),
+            Some(Unsupported::Integers)
+        );
+    }
 }
 
 #[test]

@@ -143,7 +143,7 @@ fn planted_unsound_tubes_are_caught() {
     let weights = Weights::parse(embedded::words()).expect("a sound file");
     let mut parameters = Vec::new();
     let (mut width, mut last) = (0, 0);
-    for layer in weights.network().layers() {
+    for layer in weights.network().as_f32().expect("f32").layers() {
         width = width.max(layer.biases().len());
         last = parameters.len();
         parameters.extend(layer.biases().chain(layer.weights()));

@@ -59,13 +59,6 @@ impl Policy {
         self.check()?.tell(self.json)
     }
 
-    fn properties(&self) -> Result<Vec<StateProperty>, Failure> {
-        let Some(path) = &self.properties else {
-            return properties(Path::new("docs/safety/policy.toml"), PROPERTIES);
-        };
-        properties(path, &input::text(path, PROPERTY)?)
-    }
-
     fn row<'p>(&self, subject: &Subject<'_>, property: &'p StateProperty) -> PropertyRow<'p> {
         let limit = Duration::from_secs(self.timeout);
         let settled = subject.settle(property, Instant::now() + limit, self.check);
@@ -88,7 +81,7 @@ impl Check for Policy {
             Perspective::Joint => "joint",
             Perspective::Ego => "ego",
         };
-        let properties = self.properties()?;
+        let properties = properties_of(self.properties.as_deref())?;
         let rows: Vec<PropertyRow<'_>> = properties.iter().map(|p| self.row(&subject, p)).collect();
         let unproved = rows.iter().filter(|row| !row.proved());
         let objects: Vec<_> = rows.iter().map(PropertyRow::json).collect();
@@ -121,6 +114,14 @@ pub(super) fn policy_words(path: Option<&Path>) -> Result<(&Path, Vec<u32>), Fai
 pub(super) fn subject<'w>(path: &Path, words: &'w [u32]) -> Result<Subject<'w>, Failure> {
     let weights = Weights::parse(words).map_err(|error| unusable(path, error, WEIGHTS))?;
     Subject::new(weights).map_err(|error| unusable(path, error, "another policy"))
+}
+
+/// The properties of a file; without a `path` those of the embedded policy.
+pub(crate) fn properties_of(path: Option<&Path>) -> Result<Vec<StateProperty>, Failure> {
+    let Some(path) = path else {
+        return properties(Path::new("docs/safety/policy.toml"), PROPERTIES);
+    };
+    properties(path, &input::text(path, PROPERTY)?)
 }
 
 fn properties(path: &Path, text: &str) -> Result<Vec<StateProperty>, Failure> {

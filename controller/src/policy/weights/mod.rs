@@ -10,10 +10,16 @@
 //! | 1 | [`Perspective`]: 0 joint, 1 ego |
 //! | 3 | sizes: inputs I, width H of the hidden layers, outputs, 4 |
 //! | 8 | provenance: a SHA-256 of what the network was made from |
-//! | 1 | reserved, 0 |
-//! | … | the four layers, `f32`: for each tile of 96 neurons, and for what is left, a row of biases, then for each input a row of weights |
+//! | 1 | the network's numbers: 0 `f32`, 1 `i16` |
+//! | … | the network |
 //! | I, I | centre and scale of each feature, `f32`: the network sees (feature − centre) · scale, within ± [`LIMIT`](crate::policy::features::LIMIT) |
 //! | 1 | CRC-32 (ISO-HDLC) of all the bytes before |
+//!
+//! A network of `f32` is its four layers: for each tile of 96 neurons, and for what is left, a row of biases, then for
+//! each input a row of weights. One of `i16` is its four layers: for every four neurons a row of biases (`i32`), then for each two
+//! inputs a row of words, each with two weights (`i16`, the first input's in the low half; a last input without a second one
+//! has a zero); then eight words, the scales ([`Bits`](crate::policy::fixed::Bits)): fractional bits of the inputs and of the
+//! three hidden layers' activations, and of the four layers' weights.
 //!
 //! What lies next to each other is wanted one after the other ([`Mlp`]): a wide layer is read once, from its first
 //! word to its last. Version 1 knew no tiles; its files are refused.
@@ -26,12 +32,14 @@
 mod embed;
 mod encode;
 mod parse;
+mod quantise;
 
 pub use embed::{Aligned, words};
 pub use encode::Draft;
 
 use crate::policy::features::FeatureSet;
-use crate::policy::mlp::Mlp;
+use crate::policy::fixed::FixedMlp;
+use crate::policy::mlp::{Mlp, OUTPUTS};
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 
 const MAGIC: u32 = u32::from_le_bytes(*b"CEDE");
@@ -55,6 +63,70 @@ pub enum Perspective {
     Ego,
 }
 
+/// What a network computes in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Number {
+    F32,
+    I16,
+}
+
+impl Number {
+    /// Words of a network of this shape.
+    const fn words(self, inputs: usize, width: usize) -> usize {
+        match self {
+            Self::F32 => Mlp::words(inputs, width),
+            Self::I16 => FixedMlp::words(inputs, width),
+        }
+    }
+}
+
+/// The network of a weights file.
+#[derive(Clone, Copy, Debug)]
+pub enum Network<'a> {
+    /// In `f32`.
+    F32(Mlp<'a>),
+    /// In integers.
+    I16(FixedMlp<'a>),
+}
+
+impl<'a> Network<'a> {
+    /// The outputs for `inputs`: see [`Mlp::forward`] and [`FixedMlp::forward`].
+    #[must_use]
+    pub fn forward(&self, inputs: &[f32]) -> [f32; OUTPUTS] {
+        match self {
+            Self::F32(network) => network.forward(inputs),
+            Self::I16(network) => network.forward(inputs),
+        }
+    }
+
+    /// Width of the hidden layers.
+    #[must_use]
+    pub const fn width(&self) -> usize {
+        match self {
+            Self::F32(network) => network.width(),
+            Self::I16(network) => network.width(),
+        }
+    }
+
+    /// The network, if it is one of `f32`.
+    #[must_use]
+    pub const fn as_f32(&self) -> Option<&Mlp<'a>> {
+        match self {
+            Self::F32(network) => Some(network),
+            Self::I16(_) => None,
+        }
+    }
+
+    /// The network, if it is one of integers.
+    #[must_use]
+    pub const fn as_i16(&self) -> Option<&FixedMlp<'a>> {
+        match self {
+            Self::F32(_) => None,
+            Self::I16(network) => Some(network),
+        }
+    }
+}
+
 /// A weights file, parsed in place.
 ///
 /// What was validated stays as it is; there is no other way to make one than [`Weights::parse`].
@@ -72,7 +144,7 @@ pub enum Perspective {
 pub struct Weights<'a> {
     features: FeatureSet,
     perspective: Perspective,
-    network: Mlp<'a>,
+    network: Network<'a>,
     provenance: &'a [u32; 8],
     centres: &'a [u32],
     scales: &'a [u32],
@@ -86,7 +158,7 @@ pub enum WeightsError {
     Magic,
     /// The checksum does not fit: a bit has changed.
     Checksum,
-    /// A version, feature set or perspective that this program does not know.
+    /// A version, feature set, perspective or kind of numbers that this program does not know.
     Unknown,
     /// The number of words does not fit the layers' sizes, or the sizes are out of range.
     Shape,
@@ -94,6 +166,8 @@ pub enum WeightsError {
     OutOfRange,
     /// The buffer that it is to be written to is too short.
     NoRoom,
+    /// A sum of a network of integers could exceed 32 bits.
+    Overflow,
 }
 
 impl core::fmt::Display for WeightsError {
@@ -102,11 +176,14 @@ impl core::fmt::Display for WeightsError {
             Self::Magic => "not a weights file: it does not begin with CEDE",
             Self::Checksum => "the checksum does not fit: the file is damaged",
             Self::Unknown => {
-                "a version, feature set or perspective that this program does not know; if the file is older, train or import it again"
+                "a version, feature set, perspective or kind of numbers that this program does not know; if the file is older, train or import it again"
             }
             Self::Shape => "the layers' sizes do not fit the file's length or the limits",
             Self::OutOfRange => "a weight is not finite or too large",
             Self::NoRoom => "the buffer is too short for the weights",
+            Self::Overflow => {
+                "a sum of the integer network could exceed 32 bits: quantise it with fewer fractional bits"
+            }
         })
     }
 }
@@ -128,7 +205,7 @@ impl<'a> Weights<'a> {
 
     /// The network.
     #[must_use]
-    pub const fn network(&self) -> &Mlp<'a> {
+    pub const fn network(&self) -> &Network<'a> {
         &self.network
     }
 
@@ -181,12 +258,17 @@ pub(crate) mod testing {
         .map(|x| ((x >> 16) as u16 as i16) as f32 / 32768.0)
     }
 
-    /// A weights file with random weights.
-    pub(crate) fn file(features: FeatureSet, perspective: Perspective, width: usize) -> Vec<u32> {
+    /// What `with` makes of a draft with random weights.
+    pub(crate) fn draft<T>(
+        features: FeatureSet,
+        perspective: Perspective,
+        width: usize,
+        with: impl FnOnce(&Draft<'_>) -> T,
+    ) -> T {
         let inputs = features.count();
         let count = Mlp::words(inputs, width);
         let parameters: Vec<f32> = noise(7).map(|w| 0.4 * w).take(count).collect();
-        let draft = Draft {
+        with(&Draft {
             features,
             perspective,
             width,
@@ -194,17 +276,36 @@ pub(crate) mod testing {
             centres: &vec![1.0; inputs],
             scales: &vec![0.1; inputs],
             parameters: &parameters,
-        };
-        let mut words = vec![0; draft.words()];
-        draft.encode(&mut words).unwrap();
-        words
+        })
+    }
+
+    /// A weights file with random weights.
+    pub(crate) fn file(features: FeatureSet, perspective: Perspective, width: usize) -> Vec<u32> {
+        draft(features, perspective, width, |draft| {
+            let mut words = vec![0; draft.words()];
+            draft.encode(&mut words).unwrap();
+            words
+        })
+    }
+
+    /// The same in integers.
+    pub(crate) fn file_i16(
+        features: FeatureSet,
+        perspective: Perspective,
+        width: usize,
+    ) -> Vec<u32> {
+        draft(features, perspective, width, |draft| {
+            let mut words = vec![0; draft.words_i16()];
+            draft.encode_i16([12, 11, 11, 11], &mut words).unwrap();
+            words
+        })
     }
 }
 
 #[cfg(test)]
 mod tests {
     extern crate std;
-    use super::testing::{file, noise};
+    use super::testing::{file, file_i16, noise};
     use super::*;
     use crate::policy::mlp::MAX_WIDTH;
     use std::vec::Vec;
@@ -213,14 +314,18 @@ mod tests {
     fn what_is_written_is_read_back() {
         for features in FeatureSet::ALL {
             for perspective in [Perspective::Joint, Perspective::Ego] {
-                let file = file(features, perspective, 32);
-                let weights = Weights::parse(&file).unwrap();
-                assert_eq!(weights.features(), features);
-                assert_eq!(weights.perspective(), perspective);
-                assert_eq!(weights.network().width(), 32);
-                assert_eq!(weights.provenance()[31], 31);
-                assert!(weights.normalisation().all(|n| n == (1.0, 0.1)));
-                assert_eq!(weights.normalisation().count(), features.count());
+                for file in [
+                    file(features, perspective, 32),
+                    file_i16(features, perspective, 32),
+                ] {
+                    let weights = Weights::parse(&file).unwrap();
+                    assert_eq!(weights.features(), features);
+                    assert_eq!(weights.perspective(), perspective);
+                    assert_eq!(weights.network().width(), 32);
+                    assert_eq!(weights.provenance()[31], 31);
+                    assert!(weights.normalisation().all(|n| n == (1.0, 0.1)));
+                    assert_eq!(weights.normalisation().count(), features.count());
+                }
             }
         }
     }
@@ -229,7 +334,8 @@ mod tests {
     fn every_parameter_is_read_back_in_order() {
         for width in (16..=MAX_WIDTH).step_by(16) {
             let file = file(FeatureSet::Raw, Perspective::Ego, width);
-            let layers = Weights::parse(&file).unwrap().network().layers();
+            let weights = Weights::parse(&file).unwrap();
+            let layers = weights.network().as_f32().unwrap().layers();
             let read = layers.iter().flat_map(|l| l.biases().chain(l.weights()));
             let written = noise(7).map(|w| 0.4 * w).take(Mlp::words(8, width));
             assert!(read.eq(written), "{width} wide");
@@ -238,23 +344,27 @@ mod tests {
 
     #[test]
     fn every_flipped_bit_is_found() {
-        let mut file = file(FeatureSet::Raw, Perspective::Joint, 16);
-        assert!(Weights::parse(&file).is_ok());
-        for bit in 0..32 * file.len() {
-            file[bit / 32] ^= 1 << (bit % 32);
-            assert!(Weights::parse(&file).is_err(), "bit {bit}");
-            file[bit / 32] ^= 1 << (bit % 32);
+        for file in [file, file_i16] {
+            let mut file = file(FeatureSet::Raw, Perspective::Joint, 16);
+            assert!(Weights::parse(&file).is_ok());
+            for bit in 0..32 * file.len() {
+                file[bit / 32] ^= 1 << (bit % 32);
+                assert!(Weights::parse(&file).is_err(), "bit {bit}");
+                file[bit / 32] ^= 1 << (bit % 32);
+            }
         }
     }
 
     #[test]
     fn files_that_are_cut_short_or_continued_are_refused() {
-        let mut file = file(FeatureSet::Raw, Perspective::Ego, 16);
-        for length in 0..file.len() {
-            assert!(Weights::parse(&file[..length]).is_err(), "{length} words");
+        for file in [file, file_i16] {
+            let mut file = file(FeatureSet::Raw, Perspective::Ego, 16);
+            for length in 0..file.len() {
+                assert!(Weights::parse(&file[..length]).is_err(), "{length} words");
+            }
+            file.push(0);
+            assert!(Weights::parse(&file).is_err());
         }
-        file.push(0);
-        assert!(Weights::parse(&file).is_err());
     }
 
     /// `file` with one word changed and the checksum made good.
@@ -278,7 +388,8 @@ mod tests {
         }
         assert_eq!(forged(4, 14), WeightsError::Shape);
         assert_eq!(forged(6, 2), WeightsError::Shape);
-        assert_eq!(forged(15, 1), WeightsError::Unknown);
+        assert_eq!(forged(15, 1), WeightsError::Shape);
+        assert_eq!(forged(15, 2), WeightsError::Unknown);
         let centre = HEADER + Mlp::words(8, 16);
         for (place, limit) in [(HEADER, MAX_WEIGHT), (centre, MAX_NORMALISATION)] {
             for bad in [f32::NAN, f32::INFINITY, limit * 1.1, -limit * 1.1] {

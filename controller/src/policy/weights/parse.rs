@@ -1,10 +1,11 @@
 //! Words become weights: everything is checked before anything is used.
 
 use super::{
-    HEADER, MAGIC, MAX_NORMALISATION, MAX_WEIGHT, Perspective, VERSION, Weights, WeightsError,
-    crc32, size,
+    HEADER, MAGIC, MAX_NORMALISATION, MAX_WEIGHT, Network, Number, Perspective, VERSION, Weights,
+    WeightsError, crc32, size,
 };
 use crate::policy::features::FeatureSet;
+use crate::policy::fixed::FixedMlp;
 use crate::policy::mlp::{MAX_WIDTH, Mlp, OUTPUTS};
 
 impl<'a> Weights<'a> {
@@ -24,14 +25,10 @@ impl<'a> Weights<'a> {
         }
         let (header, rest) = content.split_first_chunk().ok_or(WeightsError::Shape)?;
         let header = Header::parse(header)?;
-        let shape = body(rest, header.features.count(), header.width);
-        let (parameters, centres, scales) = shape.ok_or(WeightsError::Shape)?;
-        let network = Mlp::new(parameters, header.features.count(), header.width)
-            .ok_or(WeightsError::Shape)?;
-        if !(in_range(parameters, MAX_WEIGHT)
-            && in_range(centres, MAX_NORMALISATION)
-            && in_range(scales, MAX_NORMALISATION))
-        {
+        let shape = header.body(rest).ok_or(WeightsError::Shape)?;
+        let (parameters, centres, scales) = shape;
+        let network = header.network(parameters)?;
+        if !(in_range(centres, MAX_NORMALISATION) && in_range(scales, MAX_NORMALISATION)) {
             return Err(WeightsError::OutOfRange);
         }
         Ok(Self {
@@ -50,6 +47,7 @@ struct Header<'a> {
     perspective: Perspective,
     width: usize,
     provenance: &'a [u32; 8],
+    number: Number,
 }
 
 impl<'a> Header<'a> {
@@ -63,10 +61,10 @@ impl<'a> Header<'a> {
             width,
             outputs,
             provenance @ ..,
-            reserved,
+            number,
         ] = words;
         let width = usize::try_from(*width).unwrap_or(usize::MAX);
-        if *version != VERSION || *reserved != 0 {
+        if *version != VERSION {
             return Err(WeightsError::Unknown);
         }
         let header = Self {
@@ -74,6 +72,7 @@ impl<'a> Header<'a> {
             perspective: perspective_of(*perspective).ok_or(WeightsError::Unknown)?,
             width,
             provenance,
+            number: number_of(*number).ok_or(WeightsError::Unknown)?,
         };
         let known = size(header.features.count()) == *inputs && size(OUTPUTS) == *outputs;
         if known && width <= MAX_WIDTH {
@@ -82,13 +81,29 @@ impl<'a> Header<'a> {
             Err(WeightsError::Shape)
         }
     }
-}
 
-/// What follows the header: parameters, centres, scales.
-fn body(words: &[u32], inputs: usize, width: usize) -> Option<(&[u32], &[u32], &[u32])> {
-    let (parameters, rest) = words.split_at_checked(Mlp::words(inputs, width))?;
-    let (centres, scales) = rest.split_at_checked(inputs)?;
-    (scales.len() == inputs).then_some((parameters, centres, scales))
+    /// What follows the header: the network, centres, scales.
+    fn body(&self, words: &'a [u32]) -> Option<(&'a [u32], &'a [u32], &'a [u32])> {
+        let inputs = self.features.count();
+        let (network, rest) = words.split_at_checked(self.number.words(inputs, self.width))?;
+        let (centres, scales) = rest.split_at_checked(inputs)?;
+        (scales.len() == inputs).then_some((network, centres, scales))
+    }
+
+    fn network(&self, words: &'a [u32]) -> Result<Network<'a>, WeightsError> {
+        let inputs = self.features.count();
+        match self.number {
+            Number::F32 => {
+                let network = Mlp::new(words, inputs, self.width).ok_or(WeightsError::Shape)?;
+                if in_range(words, MAX_WEIGHT) {
+                    Ok(Network::F32(network))
+                } else {
+                    Err(WeightsError::OutOfRange)
+                }
+            }
+            Number::I16 => FixedMlp::new(words, inputs, self.width).map(Network::I16),
+        }
+    }
 }
 
 fn in_range(words: &[u32], limit: f32) -> bool {
@@ -105,4 +120,10 @@ fn perspective_of(code: u32) -> Option<Perspective> {
     [Perspective::Joint, Perspective::Ego]
         .into_iter()
         .find(|&p| p as u32 == code)
+}
+
+fn number_of(code: u32) -> Option<Number> {
+    [Number::F32, Number::I16]
+        .into_iter()
+        .find(|&n| n as u32 == code)
 }

@@ -1,7 +1,7 @@
 //! How much RAM was touched since it was painted; the start-up code paints all of it first.
 
 /// What `cortex-m-rt` paints the stack with.
-const PAINT: u32 = 0xcccc_cccc;
+pub(crate) const PAINT: u32 = 0xcccc_cccc;
 
 unsafe extern "C" {
     static _stack_end: u32;
@@ -13,7 +13,7 @@ unsafe extern "C" {
 #[inline(never)]
 pub(crate) fn paint() {
     let end = (&raw const _stack_end).cast_mut();
-    let mut word = (cortex_m::register::msp::read() as *mut u32).wrapping_sub(MARGIN);
+    let mut word = crate::board::stack_pointer().wrapping_sub(MARGIN);
     // SAFETY: the words between the end of the stack and its pointer are nobody's, and the margin
     // keeps clear of what this function itself may have there.
     while word > end {
