@@ -629,7 +629,7 @@ mod tests {
         let mut builder = Site::builder();
         let east = route(&[(-60.0, 0.0), (120.0, 0.0)]);
         let path = builder.path(&east, Class::Car, Footprint::PAPER).unwrap();
-        builder.speed_limit(path, 30.0, 6.0).unwrap();
+        builder.speed_limit(path, 50.0, 6.0).unwrap();
         let site = builder.build().unwrap();
         let at = |s, most: Option<f32>| {
             let mut approach = drive(&file).enter(&site, path).unwrap();
@@ -648,9 +648,9 @@ mod tests {
         // 64 m²/s² at 1.5 m/s² are 21.3 m.
         assert_eq!((at(0.0, None), at(0.0, Some(0.5))), (FREE, 0.5));
         for most in [None, Some(2.0)] {
-            assert!((at(9.0, most) + 1.5).abs() < 0.2, "{}", at(9.0, most));
+            assert!((at(29.0, most) + 1.5).abs() < 0.2, "{}", at(29.0, most));
         }
-        assert_eq!(at(9.0, Some(-2.5)), -2.5);
+        assert_eq!(at(29.0, Some(-2.5)), -2.5);
     }
 
     #[test]
