@@ -84,7 +84,7 @@ Qed.
 
 (* Even turns are for who gives way, odd ones for who comes first. The shield of vehicle x owns a turn by its own values. *)
 Definition owns_by_order S_ L after by_ (x : bool) (i n : nat) :=
-  if Nat.even n then before S_ L after by_ (negb x) i else before S_ L after by_ x i.
+  if Nat.even (n / 2) then before S_ L after by_ (negb x) i else before S_ L after by_ x i.
 
 (* Lemma 6. A count of the pair is the least of both. *)
 Theorem orders_agree p sure_p ended_p S_p L_p o after by_ q sure_q ended_q S_q L_q o' after' by' pair_q x :
@@ -96,7 +96,7 @@ Proof.
   assert (ends : forall y ly, L_q y j = Some ly -> q (j - ly)%nat <= p i).
   { intros y ly e. specialize (least_ j l known y ly e). apply Rle_trans with (2 := no_end).
     apply (calls_ordered k q ok (its_grid _ _ _ _ _ _ _ _ Q)). lia. }
-  destruct (Nat.even n); eapply (orders_exclude p sure_p ended_p S_p L_p o after by_ q sure_q ended_q S_q L_q o' after' by');
+  destruct (Nat.even (n / 2)); eapply (orders_exclude p sure_p ended_p S_p L_p o after by_ q sure_q ended_q S_q L_q o' after' by');
     eauto.
 Qed.
 
@@ -147,8 +147,8 @@ Qed.
 
 (* P has the right of way: Q gives way. *)
 Theorem never_both_right_of_way :
-  takes_turns T G both_S_p both_L_p (fun _ n => Nat.even n = false) turn_p ->
-  takes_turns T G both_S_q both_L_q (fun _ n => Nat.even n = true) turn_q ->
+  takes_turns T G both_S_p both_L_p (fun _ n => Nat.even (n / 2) = false) turn_p ->
+  takes_turns T G both_S_q both_L_q (fun _ n => Nat.even (n / 2) = true) turn_q ->
   (forall i, claim_p i -> by_ x <= after (negb x) + theta) ->
   (forall j, claim_q j -> by' (negb x) + theta <= after' x) ->
   forall t i j, p i <= t < p (i + 1)%nat -> q j <= t < q (j + 1)%nat ->
@@ -166,8 +166,8 @@ Qed.
 
 (* P has the right of way whoever arrives first: Q never claims but by turns. Whose turn it is, is settled by any order. *)
 Theorem never_both_sides (gives_way : bool) :
-  takes_turns T G both_S_p both_L_p (fun _ n => Nat.even n = gives_way) turn_p ->
-  takes_turns T G both_S_q both_L_q (fun _ n => Nat.even n = negb gives_way) turn_q ->
+  takes_turns T G both_S_p both_L_p (fun _ n => Nat.even (n / 2) = gives_way) turn_p ->
+  takes_turns T G both_S_q both_L_q (fun _ n => Nat.even (n / 2) = negb gives_way) turn_q ->
   (forall j, ~ claim_q j) ->
   forall t i j, p i <= t < p (i + 1)%nat -> q j <= t < q (j + 1)%nat ->
   claims_now claim_p turn_p i -> ~ claims_now claim_q turn_q j.

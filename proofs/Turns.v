@@ -47,7 +47,7 @@ Definition agree (p q : nat -> R) (L_q : nat -> option nat) (owns_p owns_q : nat
 
 (* Where one of both has the right of way, they agree: it settles whose turn it is. *)
 Lemma right_of_way_agrees p q L_q (gives_way : bool) :
-  agree p q L_q (fun _ n => Nat.even n = gives_way) (fun _ n => Nat.even n = negb gives_way).
+  agree p q L_q (fun _ n => Nat.even (n / 2) = gives_way) (fun _ n => Nat.even (n / 2) = negb gives_way).
 Proof. intros i j n l _ _ _ a b. rewrite a in b. destruct gives_way; discriminate. Qed.
 
 Lemma begins_grows n n' : (n <= n' -> begins n <= begins n')%nat.

@@ -101,10 +101,29 @@ def test_nobody_is_stuck_where_the_profile_drives_everybody(tmp_path, kind):
     is_through(netconvert(tmp_path, kind), "profile", 0.95)
 
 
-# Without signs some of the policy's are (docs/python.md).
-@pytest.mark.parametrize("kind", ["allway_stop", "priority", "priority_stop", "zipper"])
+@pytest.mark.parametrize("kind", KINDS)
 def test_nobody_is_stuck_where_the_policy_drives_everybody(tmp_path, kind):
-    is_through(netconvert(tmp_path, kind), "cede", 0.5)
+    is_through(netconvert(tmp_path, kind), "cede", 0.95)
+
+
+def test_who_is_behind_another_is_told_if_it_may_take_another_way(tmp_path):
+    routes = tmp_path / "r.rou.xml"
+    vehicle = '<vehicle id="{}" depart="{}" departSpeed="8"><route edges="{}"/></vehicle>'
+    rows = (("a", 0, "WC CN"), ("b", 2, "WC CE"), ("c", 4, "WC CE"), ("ego", 5, "SC CN"))
+    routes.write_text(f"<routes>{''.join(vehicle.format(*row) for row in rows)}</routes>")
+    told = set()
+
+    class Watched(Bridge):
+        def _drive(self, car, now, tracks):
+            if car.name == "ego" and self.cars["a"].lane == "WC_0":
+                told.update(track.number for track in tracks)
+            super()._drive(car, now, tracks)
+
+    net = Network(netconvert(tmp_path, "priority"))
+    bridge = Watched(net, Settings(driver="profile", time=14.0), routes=routes)
+    bridge.run()
+    # Numbers follow departures: the third is behind the second, and goes the same way.
+    assert told == {1, 2}
 
 
 @pytest.mark.parametrize("intent", ["indicated", "known"])
