@@ -120,7 +120,7 @@ def test_who_is_behind_another_is_told_if_it_may_take_another_way(tmp_path):
             super()._drive(car, now, tracks)
 
     net = Network(netconvert(tmp_path, "priority"))
-    bridge = Watched(net, Settings(driver="profile", time=14.0), routes=routes)
+    bridge = Watched(net, Settings(driver="profile", time=14.0, intent="known"), routes=routes)
     bridge.run()
     # Numbers follow departures: the third is behind the second, and goes the same way.
     assert told == {1, 2}
