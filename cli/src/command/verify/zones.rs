@@ -7,9 +7,8 @@ use crate::failure::Failure;
 use crate::input;
 use crate::progress;
 use crate::safety::Kind;
-use crate::source::Source;
 use crate::threads::Threads;
-use cede_data::output;
+use cede_data::{Dataset, output};
 use cede_verify::zones::example::with_zones;
 use cede_verify::zones::{self, Failing, RESERVE, Site, Verdict};
 use clap::Args;
@@ -34,8 +33,18 @@ pub(crate) struct Zones {
     /// A file with a junction, or junctions by name: crossing, four-arm, tee, bends, demo, campaign [default: all names]
     #[arg(value_name = "FILE|NAME")]
     which: Vec<PathBuf>,
-    #[command(flatten)]
-    source: Option<Source>,
+    /// The junctions of the recorded encounters in this folder
+    #[arg(long, value_name = "DIR")]
+    data: Option<PathBuf>,
+    /// Sites of the recordings, separated by commas
+    #[arg(
+        long,
+        value_name = "NAME[,NAME…]",
+        value_delimiter = ',',
+        requires = "data",
+        default_value = "EP0"
+    )]
+    site: Vec<String>,
     /// Maximum number of parts that the places of two paths are divided into.
     #[arg(long, default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..))]
     parts: u64,
@@ -94,9 +103,9 @@ impl Zones {
                 None => Named::one(which.display(), read(which)?),
             });
         }
-        if let Some(source) = &self.source {
-            for dataset in source.load(1)? {
-                chosen.push(Named::recorded(&dataset));
+        if let Some(folder) = &self.data {
+            for name in &self.site {
+                chosen.push(Named::recorded(&Dataset::load(folder, name)?));
             }
         }
         if chosen.is_empty() {
