@@ -19,7 +19,7 @@ examples=firmware/examples/c
 target=thumbv7em-none-eabihf
 max_flash=114688 # with the texts of the examples
 max_ecu=106496   # without
-max_ram=17408
+max_ram=24576
 max_instructions=100000
 
 fail() {
