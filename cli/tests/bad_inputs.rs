@@ -129,6 +129,9 @@ const CASES: &[Case] = &[
     ("reproduce --data synthetic --transfer MA", 2, "--transfer has no effect with --data synthetic"),
     // Policies of other programs.
     ("export --format pdf --out p.pdf", 2, "[possible values: onnx, safetensors]"),
+    ("export --format onnx --quantise i16 --out p.cede", 2, "cannot be used with"),
+    ("export --out p.cede", 2, "required arguments were not provided"),
+    ("verify departure --only SR-99", 3, "there is no property SR-99"),
     ("export --format onnx --out folder", 3, "cannot write folder: this is a folder"),
     ("export --format onnx --out .", 3, "cannot write .: this is a folder"),
     ("export --format onnx --out p.onnx --weights empty.cede", 3, "not a weights file"),

@@ -184,8 +184,8 @@ fn a_policy_that_yields_is_told_from_one_with_a_flipped_sign() {
 
 #[test]
 fn a_policy_of_integers_stays_within_its_departure() {
-    let limit = Duration::from_millis(300);
-    for seed in 1..=4 {
+    let limit = Duration::from_millis(100);
+    for seed in 1..=2 {
         let parameters = random_parameters(FeatureSet::Rights, seed);
         let floats = file(FeatureSet::Rights, &parameters);
         let integers = file_i16(FeatureSet::Rights, &parameters);
@@ -214,7 +214,9 @@ fn a_policy_of_integers_stays_within_its_departure() {
         }
         // Of another policy nothing small is proved, and one in f32 is none of integers.
         let mut others = parameters.clone();
-        others[20] += 0.05;
+        // The bias of the first output.
+        let bias = others.len() - (WIDTH + 1) * 4;
+        others[bias] += 0.5;
         let others = file_i16(FeatureSet::Rights, &others);
         let far = subject.departure(weights(&others), properties, 0.01, limit);
         assert!(far.expect("of the same shape").bound > found.bound);
