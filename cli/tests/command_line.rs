@@ -6,7 +6,9 @@ use std::path::Path;
 
 fn cede_in(folder: &Path, arguments: &str) -> Assert {
     let mut command = assert_cmd::Command::new(env!("CARGO_BIN_EXE_cede"));
-    command.current_dir(folder).args(arguments.split_whitespace());
+    command
+        .current_dir(folder)
+        .args(arguments.split_whitespace());
     command.assert()
 }
 

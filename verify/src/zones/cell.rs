@@ -3,6 +3,10 @@
 use super::Zone;
 use crate::interval::Interval;
 
+/// Metres by which a zone counts as longer for either vehicle: where a path's direction changes, overlaps reach to its very
+/// border.
+const SEAM: f64 = 1e-3;
+
 /// Places of ego and other, and the lead: all pairs (s, t) with s, t and s − t in these closed intervals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cell {
@@ -33,7 +37,7 @@ impl Cell {
         Self { ego, other, ..self }.narrowed()
     }
 
-    /// What no zone holds, in parts. A zone's border is not in it.
+    /// What no zone holds, nor comes nearer to than [`SEAM`], in parts.
     pub(super) fn outside(self, zones: &[Zone]) -> Vec<Self> {
         let mut parts = vec![self];
         for zone in zones {
@@ -44,7 +48,8 @@ impl Cell {
 
     fn without(mut self, zone: &Zone) -> Vec<Self> {
         let mut parts = Vec::new();
-        let spans = [zone.ego, zone.other, zone.lead];
+        let longer = |[from, to]: [f64; 2]| [from - SEAM, to + SEAM];
+        let spans = [longer(zone.ego), longer(zone.other), zone.lead];
         for (side, [from, to]) in (0..3).zip(spans) {
             let whole = self.side(side);
             let below = Interval::new(f64::NEG_INFINITY, from);
@@ -146,8 +151,8 @@ mod tests {
     }
 
     fn holds(zone: &Zone, s: f64, t: f64) -> bool {
-        let inside = |[from, to]: [f64; 2], x: f64| from < x && x < to;
-        inside(zone.ego, s) && inside(zone.other, t) && inside(zone.lead, s - t)
+        let inside = |[from, to]: [f64; 2], more: f64, x: f64| from - more < x && x < to + more;
+        inside(zone.ego, SEAM, s) && inside(zone.other, SEAM, t) && inside(zone.lead, 0.0, s - t)
     }
 
     proptest! {

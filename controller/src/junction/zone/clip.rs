@@ -31,8 +31,8 @@ pub(super) struct Cell {
 impl Cell {
     pub(super) fn of(a: &Motion, b: &Motion) -> Self {
         let span = |motion: &Motion| Span {
-            from: motion.arc - TOUCHING,
-            to: motion.arc + motion.length + TOUCHING,
+            from: motion.arc,
+            to: motion.arc + motion.length,
         };
         let (ego, other) = (span(a), span(b));
         Self {
@@ -208,20 +208,18 @@ fn along(interval: Span, motion: &Motion) -> Span {
     }
 }
 
-/// An interval of a motion as arc lengths; one that reaches an end of the route goes on past it. One that reaches an end of
-/// the motion goes on past that a little: where directions change, a pair of places is inside of a zone, not on its border.
+/// An interval of a motion as arc lengths; one that reaches an end of the route goes on past it.
 fn placed(interval: Span, motion: &Motion) -> Span {
-    let within = along(interval, motion);
     Span {
-        from: match (interval.from <= TOUCHING, motion.first) {
-            (true, true) => -FAR,
-            (true, false) => within.from - TOUCHING,
-            (false, _) => within.from,
+        from: if motion.first && interval.from <= TOUCHING {
+            -FAR
+        } else {
+            motion.arc + interval.from
         },
-        to: match (interval.to >= motion.length - TOUCHING, motion.last) {
-            (true, true) => FAR,
-            (true, false) => within.to + TOUCHING,
-            (false, _) => within.to,
+        to: if motion.last && interval.to >= motion.length - TOUCHING {
+            FAR
+        } else {
+            motion.arc + interval.to
         },
     }
 }

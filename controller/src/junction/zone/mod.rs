@@ -39,8 +39,7 @@ pub const INFLATION: f32 = 0.02;
 /// is ahead along its route may be in front of the other.
 pub(crate) const WIDEST: f32 = 2.0;
 
-/// Zones whose intervals come as near as this (m) are one; also how near to a route's end its end is, and how far a zone
-/// goes on where directions change.
+/// Zones whose intervals come as near as this (m) are one; also how near to a route's end its end is.
 const TOUCHING: f32 = 1.0e-3;
 
 /// A closed interval, `from` ≤ `to`.
