@@ -112,6 +112,7 @@ impl FromStr for Drivers {
 }
 
 /// A driver that is judged.
+#[expect(clippy::large_enum_variant, reason = "a handful of them exist")]
 pub(crate) enum Contender {
     /// A baseline, with or without the shield.
     Baseline(Baseline),

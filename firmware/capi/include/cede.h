@@ -46,7 +46,7 @@
 /**
  * Words of eight bytes of a cede_drive.
  */
-#define CEDE_DRIVE_WORDS 40
+#define CEDE_DRIVE_WORDS 42
 
 /**
  * The part of the left-turner, or of the one that has to give way.
@@ -126,7 +126,7 @@
 /**
  * Words of eight bytes of a cede_policy.
  */
-#define CEDE_POLICY_WORDS 28
+#define CEDE_POLICY_WORDS 32
 
 /**
  * The version of this interface. A program compares it with cede_abi_version() once, at its start: it grows with every

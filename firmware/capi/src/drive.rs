@@ -8,7 +8,7 @@ use crate::status::cede_status;
 use cede_controller::{Drive, Part};
 
 /// Words of eight bytes of a cede_drive.
-pub const CEDE_DRIVE_WORDS: usize = 40;
+pub const CEDE_DRIVE_WORDS: usize = 42;
 
 /// The part of the left-turner, or of the one that has to give way.
 pub const CEDE_PART_LEFT: u8 = 0;

@@ -6,7 +6,7 @@ use crate::status::cede_status;
 use cede_controller::{FeatureSet, Perspective, Policy, WeightsError};
 
 /// Words of eight bytes of a cede_policy.
-pub const CEDE_POLICY_WORDS: usize = 28;
+pub const CEDE_POLICY_WORDS: usize = 32;
 
 /// A policy. It refers to the weights that it was initialised with: they stay where and as they are for as long as the
 /// policy, or a drive or an approach with it, is used.
