@@ -100,7 +100,7 @@ type Field = (
 const FIELDS: [Field; 17] = [
     ("period", ContractBuilder::period, 1.0),
     ("jitter", ContractBuilder::jitter, 0.04),
-    ("latency", ContractBuilder::latency, 0.1),
+    ("latency", ContractBuilder::latency, 1.0),
     ("position_error", ContractBuilder::position_error, 10.0),
     ("speed_error", ContractBuilder::speed_error, 10.0),
     ("slack", ContractBuilder::slack, 10.0),
