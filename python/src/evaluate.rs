@@ -129,6 +129,7 @@ fn json(value: &impl Serialize) -> PyResult<String> {
 }
 
 /// A driver that is judged.
+#[expect(clippy::large_enum_variant, reason = "a handful of them exist")]
 pub(crate) enum Contender {
     Baseline(Baseline),
     Cede(Policy),

@@ -113,7 +113,7 @@ class Site:
     junction: Junction
     """With the rights that SUMO's drivers know."""
     fleet: Junction
-    """For vehicles that all are driven, and go in the order of their arrival where no sign says otherwise."""
+    """Where all are driven: the order of arrival counts where no sign says who goes first."""
     movements: list[Movement]
     on_lane: dict[str, list[tuple[Movement, Stretch]]]
     """The movements that use a lane."""
