@@ -350,8 +350,10 @@ impl Junction {
             .ok_or_else(|| self.unknown(path))
     }
 
+    /// The line of a path, which a pedestrian's is, too: no vehicle can enter by it.
     fn polyline(&self, path: u8) -> PyResult<Polyline<'_>> {
-        let found = self.way(path)?.polyline(PathId::new(path));
+        let mut ways = (0..=u8::MAX).filter_map(|ego| self.0.way(PathId::new(ego)));
+        let found = ways.next().and_then(|way| way.polyline(PathId::new(path)));
         found.ok_or_else(|| self.unknown(path))
     }
 

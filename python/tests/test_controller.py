@@ -192,7 +192,7 @@ def test_limits_and_bends_bound_the_proposal():
     path = builder.path(LEFT, limits=[(0.0, 5.0)])
     junction = builder.build()
     assert junction.allowed_speed(path, 1.0) == 5.0
-    assert junction.allowed_speed(path, 38.0) < 5.0
+    assert junction.allowed_speed(path, 40.0) < 5.0
     assert junction.allowed_acceleration(path, 1.0, 9.0) < 0.0
     decision = cede.Drive().enter(junction, path).decide(0.0, junction.vehicle(path, 1.0, 9.0))
     assert decision.acceleration < 0.0
@@ -203,7 +203,7 @@ def test_somebody_out_of_sight_is_a_reason():
     zone = junction.conflict(left, oncoming).zones[0]
     shield = cede.Shield(junction, left)
     shield.set_sight(0.0, [(oncoming, zone[2][0] - 5.0, 15.0)])
-    decision = shield.filter(0.0, junction.vehicle(left, zone[1][0] - 3.0, 3.0), [], 3.0)
+    decision = shield.filter(0.0, junction.vehicle(left, zone[1][0] - 8.0, 6.0), [], 3.0)
     assert (decision.reason.kind, decision.reason.path) == ("hidden", oncoming)
     with pytest.raises(cede.Error, match="it must be on the path"):
         shield.set_sight(0.1, [(oncoming, 1e4, 15.0)])
