@@ -1,4 +1,4 @@
-//! Those whom nobody can see: where a path is out of sight, somebody may always be there.
+//! Vehicles out of sight: where a part of a path is hidden, one is assumed to come.
 
 use super::bounds::Bounds;
 use super::contract::Contract;
