@@ -21,6 +21,34 @@ pub struct Duty {
     arrived: Option<f64>,
     /// Both were seen at rest: the ego may have the turn.
     waited: bool,
+    /// In each zone: whether the ego may hold it.
+    stands: Vec<Stands>,
+}
+
+/// Whether the ego may hold a zone in which it stands: from when both have rested for a while until it has left.
+#[derive(Clone, Copy, Debug, Default)]
+struct Stands {
+    /// For how long both have been at rest with the ego inside, in s.
+    rested: f64,
+    /// That was long enough for the ego to hold the zone.
+    held: bool,
+}
+
+impl Stands {
+    /// The least number of periods after which a shield counts on it, less one for each end.
+    const PERIODS: f64 = 2.0;
+
+    /// Notes a tick: whether the ego is inside, and whether both rest.
+    fn note(&mut self, numbers: &Numbers, inside: bool, both_rest: bool) {
+        if !inside {
+            *self = Self::default();
+        } else if both_rest {
+            self.rested += TICK;
+            self.held |= self.rested >= Self::PERIODS * numbers.period;
+        } else {
+            self.rested = 0.0;
+        }
+    }
 }
 
 /// What one owes an ego that is ahead in one lane.
@@ -129,8 +157,12 @@ impl Duty {
         let mut limit = self.keep_distance(numbers, meeting, wanted);
         if let Some(rule) = numbers.rule {
             self.note(numbers, rule, meeting, time);
-            if self.yields(numbers, rule, meeting) {
-                limit = stay_out(numbers, rule, meeting, (limit, self.ego_arrived.is_some()));
+            let yields = self.yields(numbers, rule, meeting);
+            for (area, stands) in meeting.areas.iter().zip(&self.stands) {
+                let waits = yields && (self.ego_arrived.is_some() || !area.lane);
+                if waits || stands.held {
+                    limit = stay_out(numbers, rule, meeting, area, limit);
+                }
             }
         }
         limit
@@ -168,6 +200,15 @@ impl Duty {
         }
         let slow = 0.25 * numbers.go * numbers.period + 4.0 * numbers.speed_error + 0.01;
         self.waited |= rule.patience > 0 && ego.v <= slow && me.v <= slow;
+        // Between two calls one may start and stop again.
+        let (up, down) = (numbers.other.acceleration, numbers.other.braking);
+        let unnoticed = slow + (numbers.period + 2.0 * numbers.jitter) * up * down / (up + down);
+        let both_rest = ego.v <= unnoticed && me.v <= unnoticed;
+        self.stands.resize(meeting.areas.len(), Stands::default());
+        for (area, stands) in meeting.areas.iter().zip(&mut self.stands) {
+            let inside = !area.lane && ego.s + error > area.ego[0] && ego.s < area.ego[1];
+            stands.note(numbers, inside, both_rest);
+        }
     }
 
     /// Whether the ego may have precedence.
@@ -194,28 +235,17 @@ impl Duty {
     }
 }
 
-/// C7: it stays out of every zone before which it can still stop; of lanes once the ego has arrived.
-fn stay_out(
-    numbers: &Numbers,
-    rule: Rule,
-    meeting: &Meeting<'_>,
-    (wanted, ego_arrived): (f64, bool),
-) -> f64 {
+/// C7: it stays out of a zone before which it can still stop.
+fn stay_out(numbers: &Numbers, rule: Rule, meeting: &Meeting<'_>, area: &Area, wanted: f64) -> f64 {
     let (ego, me) = (meeting.ego, meeting.me);
-    let mut limit = wanted;
-    for area in meeting
-        .areas
-        .iter()
-        .filter(|area| ego_arrived || !area.lane)
-    {
-        let over = ego.s >= area.ego[1] || me.s >= area.other[1];
-        // Arc lengths of the controller are f32: their places are off by some micrometres.
-        let edge = area.other[0] - 1e-3;
-        let stops = me.rest(rule.braking) <= edge;
-        let next = me.after(limit, TICK, numbers.other.speed);
-        if !over && stops && next.rest(rule.braking) > edge {
-            limit = limit.min(-rule.braking);
-        }
+    let over = ego.s >= area.ego[1] || me.s >= area.other[1];
+    // Arc lengths of the controller are f32: their places are off by some micrometres.
+    let edge = area.other[0] - 1e-3;
+    let stops = me.rest(rule.braking) <= edge;
+    let next = me.after(wanted, TICK, numbers.other.speed);
+    if !over && stops && next.rest(rule.braking) > edge {
+        wanted.min(-rule.braking)
+    } else {
+        wanted
     }
-    limit
 }
