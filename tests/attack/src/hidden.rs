@@ -10,18 +10,22 @@ const SPARE: f64 = 1.0;
 /// Seconds to spare.
 const TIME: f64 = 0.3;
 
-/// Whether an ego at `ego` that carries out `command` for a period, goes for `go` more and then brakes keeps clear of
-/// another at `other`, whatever that does.
+/// What an ego does next.
+#[derive(Clone, Copy, Debug)]
+pub struct Course {
+    /// The hardest acceleration (m/s²) of what was commanded before and may still act.
+    pub acts: f64,
+    /// What is commanded for one period, in m/s².
+    pub command: f64,
+    /// For how many more periods it goes, before it brakes.
+    pub go: u16,
+}
+
+/// Whether an ego at `ego` on this course keeps clear of another at `other`, whatever that does.
 #[must_use]
-pub fn fits(
-    numbers: &Numbers,
-    ego: State,
-    (command, go): (f64, u16),
-    other: State,
-    areas: &[Area],
-) -> bool {
+pub fn fits(numbers: &Numbers, ego: State, course: Course, other: State, areas: &[Area]) -> bool {
     let late = numbers.period + numbers.response();
-    let plan = f64::from(go) * numbers.period;
+    let plan = f64::from(course.go) * numbers.period;
     let spare = SPARE + 6.0 * numbers.position_error;
     let error = 2.0 * numbers.speed_error;
     // The farthest and the nearest that the ego gets.
@@ -29,13 +33,19 @@ pub fn fits(
         v: ego.v + error,
         ..ego
     };
-    let most = if go > 0 {
+    let strong = |command: f64| command.max(0.0) + numbers.drivetrain.off(command);
+    let commanded = if course.go > 0 {
         numbers.ego.acceleration
     } else {
-        command.max(0.0) + numbers.drivetrain.off(command)
+        strong(course.command)
     };
     let farthest = fast
-        .after(most, late, f64::INFINITY)
+        .after(
+            strong(course.acts).max(commanded),
+            numbers.response(),
+            f64::INFINITY,
+        )
+        .after(commanded, numbers.period, f64::INFINITY)
         .after(numbers.ego.acceleration, plan, f64::INFINITY)
         .rest(numbers.brakes);
     let slow = State {

@@ -2,7 +2,7 @@
 
 use crate::body::Body;
 use crate::corner::{Corner, View};
-use crate::hidden::fits;
+use crate::hidden::{Course, fits};
 use crate::look::Look;
 use crate::motion::TICK;
 use crate::numbers::Numbers;
@@ -15,6 +15,7 @@ use crate::sight::Sight;
 use crate::site::Leg;
 use cede_controller::dangerous::Rules;
 use cede_controller::{Decision, EnterError, Instant, Observation, Plan, Shield, SightError};
+use std::collections::VecDeque;
 
 /// Others that a shield watches.
 pub const ROOM: usize = 8;
@@ -42,6 +43,8 @@ pub struct Pilot<'s, R: Rules> {
     pub flagged: bool,
     /// What was decided last.
     pub last: Option<Decision>,
+    /// The last commands, newest first: those that may still act.
+    commands: VecDeque<f64>,
     /// What the clock shows at tick 0, in µs.
     epoch: u64,
     /// Observations that stay as they are: how many, and what.
@@ -89,6 +92,7 @@ impl<'s, R: Rules + Clone> Pilot<'s, R> {
             guarded: false,
             flagged: false,
             last: None,
+            commands: VecDeque::new(),
             epoch: rng.bits() >> 20,
             frozen: None,
             rng,
@@ -217,6 +221,9 @@ impl<'s, R: Rules + Clone> Pilot<'s, R> {
             }
         }
         self.note(setup, tick, &decision, &look, outcome);
+        let may_act = (numbers.response() / numbers.period).ceil() as usize + 1;
+        self.commands.push_front(decision.acceleration.into());
+        self.commands.truncate(may_act);
         Some(decision.acceleration.into())
     }
 
@@ -229,9 +236,12 @@ impl<'s, R: Rules + Clone> Pilot<'s, R> {
         decision: &Decision,
     ) -> bool {
         let ego = &bodies[self.me];
-        let plan = decision
-            .plan
-            .map(|plan| (decision.acceleration.into(), plan.go));
+        let acts = self.commands.iter().copied().fold(ego.felt, f64::max);
+        let plan = decision.plan.map(|plan| Course {
+            acts,
+            command: decision.acceleration.into(),
+            go: plan.go,
+        });
         let mut some = false;
         for (sight, body) in self
             .sights
