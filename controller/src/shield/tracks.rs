@@ -8,7 +8,7 @@ use super::hidden::Hidden;
 use super::own::Own;
 use super::precedence::{PairMemory, ZoneSet, has};
 use super::rules::Rules;
-use super::unwatched::{Closed, Entry, Place, Unwatched, sooner, take, unplaced};
+use super::unwatched::{Closed, Entry, Place, Unwatched, take, unplaced};
 use super::waiting::{RestState, Sighting};
 use super::walkers::Walkers;
 use crate::fault::Fault;
@@ -182,16 +182,15 @@ impl<const N: usize> Tracks<N> {
             }
         }
         for track in seen.tracks.iter().filter(|track| !drives(track)) {
-            (self.walkers).note((contract, way), ego, track, &mut findings);
+            let others = (ego, &mut self.unwatched);
+            (self.walkers).note((contract, way), others, track, &mut findings);
         }
         for other in &mut self.watched {
             let ahead = other.entry::<R>(way, ego.least, 0.0);
             other.gone |= ahead.is_none();
         }
         self.hidden.look::<R>(contract);
-        if let Some(closed) = self.unwatched.end(way, ego.least) {
-            findings.closed = sooner(findings.closed, closed);
-        }
+        findings.closed = self.unwatched.end(way, ego.least);
         findings
     }
 

@@ -1,4 +1,4 @@
-//! Vehicles that matter and for whom there is no room: their zones are closed.
+//! Those who matter and for whom there is no room: their zones are closed.
 
 use super::bounds::Bounds;
 use super::precedence::ZoneSet;
@@ -20,7 +20,7 @@ pub(crate) struct Closed {
     pub(crate) from: f32,
 }
 
-/// A vehicle that is not watched, on one of its paths.
+/// Somebody who is not watched, on one of the paths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Entry {
     pub(super) number: u16,
@@ -34,7 +34,7 @@ pub(super) struct Entry {
     pub(super) holds: bool,
 }
 
-/// What is known of where an unwatched vehicle is.
+/// What is known of where somebody unwatched is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Place {
     /// On its path.
@@ -46,13 +46,15 @@ pub(super) enum Place {
         /// Lanes in which the ego is ahead of it, and it has had the gap to keep its distance.
         settled: ZoneSet,
     },
+    /// On foot on its path, where it may stay for ever.
+    OnFoot,
     /// Nothing. One that is not seen again was perhaps never there.
     Unknown,
 }
 
 impl Entry {
     const fn is_placed(&self) -> bool {
-        matches!(self.place, Place::Known { .. })
+        !matches!(self.place, Place::Unknown)
     }
 }
 
@@ -98,7 +100,7 @@ impl Unwatched {
 
     /// One is seen whose first zone begins at `from` (m).
     pub(super) fn close(&mut self, number: u16, path: PathId, place: Place, from: f32) {
-        let placed = matches!(place, Place::Known { .. });
+        let placed = !matches!(place, Place::Unknown);
         let key = (number, path, placed);
         let known = |entry: &&mut Entry| (entry.number, entry.path, entry.is_placed()) == key;
         if let Some(entry) = self.entries.iter_mut().find(known) {
@@ -185,7 +187,7 @@ pub(super) fn sooner(first: Option<Closed>, other: Closed) -> Option<Closed> {
 }
 
 /// Where (m) the ego, at `ego` (m), enters the first zone that it has not passed.
-fn first_zone(conflict: &RouteConflict, ego: f32) -> Option<f32> {
+pub(super) fn first_zone(conflict: &RouteConflict, ego: f32) -> Option<f32> {
     let ahead = |zone: &&Zone| ego < zone.ego.to;
     conflict
         .zones()

@@ -5,7 +5,7 @@ use super::door;
 use super::hazard::{Hazard, Passage, Who};
 use super::own::Own;
 use super::tracks::Findings;
-use super::unwatched::{Closed, sooner, unplaced};
+use super::unwatched::{Place, Unwatched, first_zone, unplaced};
 use crate::headroom::Room;
 use crate::instant::Instant;
 use crate::junction::zone::{FAR, Span, Zone};
@@ -105,37 +105,35 @@ impl Walkers {
     pub(super) fn note(
         &mut self,
         (contract, way): (&Contract, Way<'_>),
-        ego: &Own,
+        (ego, unwatched): (&Own, &mut Unwatched),
         track: &Track,
         findings: &mut Findings,
     ) {
         for candidate in track.candidates() {
-            self.note_candidate((contract, way), ego, (track, candidate), findings);
+            let others = (ego, &mut *unwatched);
+            self.note_candidate((contract, way), others, (track, candidate), findings);
         }
     }
 
     fn note_candidate(
         &mut self,
         (contract, way): (&Contract, Way<'_>),
-        ego: &Own,
+        (ego, unwatched): (&Own, &mut Unwatched),
         (track, candidate): (&Track, Candidate),
         findings: &mut Findings,
     ) {
         let (number, path, now) = (track.number, candidate.path, self.now);
         let same = |it: &&mut Walker| (it.number, it.path) == (number, path) && !it.seen;
         let known = self.known.iter_mut().find(same);
-        let mut close = || {
-            let from = unplaced(way, path, Class::Pedestrian, ego.least);
-            if let Some(from) = from {
-                findings.closed = sooner(findings.closed, Closed { number, from });
-            }
-        };
         let admitted = match door::track(way, contract, track, candidate) {
             Ok(admitted) => admitted,
             Err(fault) => {
                 // One that is known coasts.
-                if known.is_none() {
-                    close();
+                if known.is_none()
+                    && unwatched.placed(number, path).is_none()
+                    && let Some(from) = unplaced(way, path, Class::Pedestrian, ego.least)
+                {
+                    unwatched.close(number, path, Place::Unknown, from);
                 }
                 findings.headroom.note_fault(fault);
                 findings.fault = findings.fault.or(Some(fault));
@@ -149,19 +147,27 @@ impl Walkers {
             findings.moved(number, rooms);
             return;
         }
-        let walker = Walker {
+        findings.headroom.note_pose(Some(number), admitted.pose);
+        let ahead = |path| way.conflict(path).and_then(|it| first_zone(it, ego.least));
+        let Some(from) = ahead(path) else { return };
+        if self.known.is_full() {
+            self.known.retain(|walker| ahead(walker.path).is_some());
+        }
+        if self.known.is_full() {
+            unwatched.close(number, path, Place::OnFoot, from);
+            return;
+        }
+        // One that was not watched may be somebody of whom the plan in force keeps clear.
+        let suspect = !unwatched.open(number, path);
+        let _ = self.known.push(Walker {
             number,
             path,
             pace: way.path(path).map_or(0.0, |path| path.pace()),
             base: around(contract, seen.0),
             at: now,
             seen: true,
-            suspect: true,
-        };
-        if self.known.push(walker).is_err() {
-            close();
-        }
-        findings.headroom.note_pose(Some(number), admitted.pose);
+            suspect,
+        });
     }
 
     /// What they are to the ego. They come from either side of their zones, and the ego waits for all of them.

@@ -10,7 +10,10 @@ use crate::sway::Sway;
 /// One that is so near (m) to the end of its lane is gone.
 const END: f64 = 4.0;
 
-/// A vehicle on its lane.
+/// One on foot stays so far (m) from the ends of its way.
+pub const KERB: f64 = 0.7;
+
+/// A vehicle on its lane, or somebody on foot.
 #[derive(Clone, Debug)]
 pub struct Body {
     /// Its lane.
@@ -37,13 +40,27 @@ impl Body {
         self.gone = self.state.s > site.lanes[self.lane].line.length() - END;
     }
 
-    /// As the judge sees it.
+    /// Walks for one tick at `velocity` (m/s, below 0 back), and stays on its way.
+    pub fn walk(&mut self, site: &Site, velocity: f64) {
+        let end = site.lanes[self.lane].line.length() - KERB;
+        self.felt = 0.0;
+        self.state = State {
+            s: (self.state.s + velocity * TICK).clamp(KERB, end),
+            v: velocity.abs(),
+        };
+    }
+
+    /// As the judge sees it: one on foot may be at its highest speed at once.
     #[must_use]
     pub fn seen<'s>(&self, site: &'s Site) -> Seen<'s> {
+        let lane = &site.lanes[self.lane];
         Seen {
-            lane: &site.lanes[self.lane],
+            lane,
             sway: self.sway,
-            state: self.state,
+            state: State {
+                v: self.state.v.max(lane.pace),
+                ..self.state
+            },
         }
     }
 

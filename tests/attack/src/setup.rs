@@ -1,7 +1,7 @@
 //! A scenario as plain data: who is where, who drives how, who sees what.
 
 use crate::actuator::{Takeover, Weakness};
-use crate::human::Manner;
+use crate::human::{Gait, Manner};
 use crate::motion::State;
 use crate::proposer::Proposer;
 use crate::sight::Sensing;
@@ -28,6 +28,8 @@ pub enum Driver {
     },
     /// Nobody that looks out for others.
     Human(Manner),
+    /// On foot.
+    Walker(Gait),
 }
 
 /// A vehicle at the beginning.

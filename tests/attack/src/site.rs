@@ -41,6 +41,8 @@ pub struct Lane {
     pub size: Size,
     /// Their class.
     pub class: Class,
+    /// The highest speed (m/s) of those on foot, either way; 0 of vehicles.
+    pub pace: f64,
     /// Its parts in junctions, in order.
     pub legs: Vec<Leg>,
     /// Lanes with the same number begin alike.
@@ -107,6 +109,7 @@ fn class(kind: Kind) -> Class {
         Kind::Car => Class::Car,
         Kind::Lorry => Class::Lorry,
         Kind::Bicycle => Class::Bicycle,
+        Kind::Pedestrian => Class::Pedestrian,
     }
 }
 
@@ -169,6 +172,9 @@ impl Site {
                 width: way.size.width as f32,
             };
             let path = builder.path(&route, class(way.kind), footprint)?;
+            if way.kind == Kind::Pedestrian {
+                builder.pace(path, way.pace as f32)?;
+            }
             let leg = Leg {
                 junction,
                 path,
@@ -207,6 +213,13 @@ impl Site {
         }
         self.junctions.push(built);
         Ok(())
+    }
+
+    /// How many lanes are of vehicles. Those of pedestrians come after them.
+    #[must_use]
+    pub fn roads(&self) -> usize {
+        let walks = |lane: &&Lane| lane.class == Class::Pedestrian;
+        self.lanes.len() - self.lanes.iter().filter(walks).count()
     }
 
     /// The zones of a vehicle on lane `ego` with one on lane `other`.
@@ -263,6 +276,7 @@ fn lane(way: &Way) -> Lane {
         line,
         size: way.size,
         class: class(way.kind),
+        pace: way.pace,
         legs: Vec::new(),
         entry: way.entry,
     }

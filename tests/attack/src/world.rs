@@ -2,7 +2,7 @@
 
 use crate::actuator::Actuator;
 use crate::body::Body;
-use crate::human::{CHOICE, Duty, Human, Meeting, Prey};
+use crate::human::{CHOICE, Duty, Human, Meeting, Prey, Walker};
 use crate::judge::Judge;
 use crate::motion::TICK;
 use crate::numbers::{Means, Numbers};
@@ -23,6 +23,7 @@ enum Mind<'s, R: Rules> {
     Waiting(Box<Pilot<'s, R>>, Human),
     Plain(Box<Plain>),
     Human(Human),
+    Walker(Walker),
 }
 
 /// When a mind acts next.
@@ -161,7 +162,7 @@ impl<'s, R: Rules + Clone> World<'s, R> {
         self.outcome.verified = self.minds.iter().all(|mind| match mind {
             Mind::Shielded(pilot) => pilot.verified,
             // It stands in for an other until its shield is ready.
-            Mind::Waiting(..) | Mind::Human(_) | Mind::Plain(_) => true,
+            Mind::Waiting(..) | Mind::Human(_) | Mind::Plain(_) | Mind::Walker(_) => true,
         });
         let passed = |i: &usize| {
             is_driven(&self.minds[*i])
@@ -195,6 +196,10 @@ impl<'s, R: Rules + Clone> World<'s, R> {
             Mind::Waiting(..) => self.hand_over(i, tick),
             Mind::Human(_) => {
                 self.choose(i);
+                true
+            }
+            Mind::Walker(_) => {
+                self.choose_way(i);
                 true
             }
         }
@@ -253,6 +258,26 @@ impl<'s, R: Rules + Clone> World<'s, R> {
         human.choose(&self.numbers, me, prey);
     }
 
+    /// The pedestrian `i` chooses how to walk on, and is after whichever driven vehicle is nearest to its way.
+    fn choose_way(&mut self, i: usize) {
+        let me = &self.bodies[i];
+        let ahead = |&j: &usize| {
+            let ego = &self.bodies[j];
+            let areas = self.setup.site.areas(ego.lane, me.lane).iter();
+            let starts = areas.filter(|area| ego.state.s < area.ego[1]);
+            let nearest = starts.map(|area| area.ego[0] - ego.state.s);
+            (!ego.gone).then(|| nearest.reduce(f64::min)).flatten()
+        };
+        let driven = self.driven.iter().copied();
+        let near = driven.filter_map(|j| Some((ahead(&j)?, j)));
+        let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0));
+        let prey = nearest.map(|(_, j)| self.prey_of(i, j));
+        let s = me.state.s;
+        if let Mind::Walker(walker) = &mut self.minds[i] {
+            walker.choose(s, prey);
+        }
+    }
+
     /// Whom the human of vehicle `i` is after: the driven vehicle whose common zone is nearest.
     fn prey(&self, i: usize) -> Option<Prey<'s>> {
         let me = &self.bodies[i];
@@ -265,19 +290,25 @@ impl<'s, R: Rules + Clone> World<'s, R> {
                 .iter()
                 .filter(|area| ego.state.s < area.ego[1] && me.state.s < area.other[1]);
             let nearest = ahead.map(|area| area.other[0]).reduce(f64::min)?;
-            Some((nearest, j, areas))
+            Some((nearest, j))
         });
-        let (_, j, areas) = meeting.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let (_, j) = meeting.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        Some(self.prey_of(i, j))
+    }
+
+    /// What the one at place `i` knows of vehicle `j`.
+    fn prey_of(&self, i: usize, j: usize) -> Prey<'s> {
         let go = match &self.minds[j] {
             Mind::Shielded(pilot) => pilot.plan().map_or(0, |plan| plan.go),
             _ => 0,
         };
-        Some(Prey {
-            state: self.bodies[j].state,
-            command: self.bodies[j].felt,
+        let [me, ego] = [i, j].map(|at| &self.bodies[at]);
+        Prey {
+            state: ego.state,
+            command: ego.felt,
             go,
-            areas,
-        })
+            areas: self.setup.site.areas(ego.lane, me.lane),
+        }
     }
 
     /// One tick of motion of everybody.
@@ -287,6 +318,10 @@ impl<'s, R: Rules + Clone> World<'s, R> {
                 continue;
             }
             let acceleration = match &self.minds[i] {
+                Mind::Walker(walker) => {
+                    self.bodies[i].walk(self.setup.site, walker.velocity);
+                    continue;
+                }
                 Mind::Shielded(_) | Mind::Plain(_) => self.bodies[i].actuator.acceleration(tick),
                 Mind::Human(human) => self.humanly(i, tick, human.wanted()),
                 Mind::Waiting(_, human) => {
@@ -445,6 +480,10 @@ fn mind<'s, R: Rules + Clone>(
     let driver = |proposer, rng: &mut Rng| proposer::Driver::new(proposer, rng.fork());
     Some(match &setup.cars[i].driver {
         Driver::Human(manner) => Mind::Human(human(manner, rng)),
+        Driver::Walker(gait) => {
+            let pace = setup.site.lanes[setup.cars[i].lane].pace;
+            Mind::Walker(Walker::new(*gait, pace, rng.fork()))
+        }
         Driver::Plain { proposer } => {
             let driver = driver(*proposer, rng);
             Mind::Plain(Box::new(Plain::new(
@@ -472,12 +511,12 @@ fn mind<'s, R: Rules + Clone>(
 }
 
 fn is_driven<R: Rules>(mind: &Mind<'_, R>) -> bool {
-    !matches!(mind, Mind::Human(_))
+    !matches!(mind, Mind::Human(_) | Mind::Walker(_))
 }
 
 fn clock<R: Rules>(mind: &Mind<'_, R>, numbers: &Numbers, outside: f64, rng: &mut Rng) -> Clock {
     let (period, jitter) = match mind {
-        Mind::Human(_) => (ticks(CHOICE), 0),
+        Mind::Human(_) | Mind::Walker(_) => (ticks(CHOICE), 0),
         _ => (
             ticks(numbers.period),
             ticks(numbers.jitter + outside * numbers.period),

@@ -1,6 +1,7 @@
 //! The shield's predicates: its margins, put together as `shield/verified.rs` and `shield/hazard.rs` do.
 
 use cede_controller::Real;
+use cede_controller::junction::MAX_PACE;
 use cede_controller::shield::actuation::Inherited;
 use cede_controller::shield::{Contract, margin};
 
@@ -25,6 +26,8 @@ pub enum Input {
     Periods,
     /// Metres that the ego must go to have cleared a zone.
     Target,
+    /// The highest speed (m/s) of a pedestrian.
+    Pace,
     /// A distance (m) along a route, ahead if positive: how far the ego may go, how far the other is from its
     /// zone, or how far one of the two is behind the other.
     Distance,
@@ -40,6 +43,7 @@ impl Input {
             Self::Command => "command",
             Self::OtherSpeed => "other's speed",
             Self::Periods => "periods",
+            Self::Pace => "pace",
             Self::Target => "target",
             Self::Distance => "distance",
         }
@@ -54,6 +58,7 @@ impl Input {
             }
             // Plans that go for more than a minute are not made.
             Self::Periods => [0.0, 60.0 / contract.period()],
+            Self::Pace => [0.0, MAX_PACE],
             Self::Target | Self::Distance => [-512.0, 512.0],
         }
     }
@@ -72,16 +77,19 @@ pub enum Predicate {
     Crosses,
     /// Does it enter a lane with the gap that the other needs behind it?
     EntersAhead,
+    /// Does it clear a crossing before a pedestrian can come to it?
+    CrossesBeforeWalker,
 }
 
 impl Predicate {
     /// Every one.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Stops,
         Self::StopsBehind,
         Self::StopsAfterGoing,
         Self::Crosses,
         Self::EntersAhead,
+        Self::CrossesBeforeWalker,
     ];
 
     /// What it is called.
@@ -93,13 +101,14 @@ impl Predicate {
             Self::StopsAfterGoing => "stops after going",
             Self::Crosses => "crosses before the other",
             Self::EntersAhead => "enters ahead of the other",
+            Self::CrossesBeforeWalker => "crosses before a pedestrian",
         }
     }
 
     /// What it depends on, in the order of a [`Region`].
     #[must_use]
     pub const fn inputs(self) -> &'static [Input] {
-        use Input::{Command, Distance, OtherSpeed, Periods, Previous, Speed, Target};
+        use Input::{Command, Distance, OtherSpeed, Pace, Periods, Previous, Speed, Target};
         match self {
             Self::Stops => &[Speed, Previous, Command, Distance],
             Self::StopsBehind => &[Speed, Previous, Command, Distance, OtherSpeed],
@@ -107,6 +116,7 @@ impl Predicate {
             Self::Crosses | Self::EntersAhead => {
                 &[Speed, Previous, Command, Distance, OtherSpeed, Target]
             }
+            Self::CrossesBeforeWalker => &[Speed, Previous, Command, Distance, Pace, Target],
         }
     }
 
@@ -153,6 +163,10 @@ impl Predicate {
                 let rush = margin::rush(contract, fifth + error, time);
                 let needed = margin::safe_gap(contract, rush.speed, ego_speed);
                 margin::enters_ahead(contract, distance, rush, needed)
+            }
+            Self::CrossesBeforeWalker => {
+                let (time, _) = clears();
+                margin::walks_clear(contract, distance, fifth, time)
             }
         }
     }

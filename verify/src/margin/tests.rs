@@ -6,6 +6,7 @@ use super::{bound, shortfall};
 use crate::interval::Interval;
 use cede_controller::Real;
 use cede_controller::dangerous::unchecked;
+use cede_controller::junction::PACE;
 use cede_controller::junction::zone::{FAR, Zone};
 use cede_controller::shield::actuation::Inherited;
 use cede_controller::shield::{Contract, Shield, choice, margin};
@@ -160,7 +161,7 @@ proptest! {
         previous in -3.0_f32..3.0, command in -3.0_f32..3.0,
     ) {
         let (ego, road) = (route(&[(-60.0, 0.0), (60.0, 0.0)]), route(&[(0.0, -60.0), (0.0, 60.0)]));
-        let [zone] = zones(&ego, &road)[..] else { panic!("one zone") };
+        let [zone] = zones(&ego, &road, Class::Car)[..] else { panic!("one zone") };
         prop_assume!(s < zone.ego.to && other < zone.other.to);
         let command = command.min(choice::most(&WORST, speed, previous));
         let given = |distance, fifth, target| [speed, previous, command, distance, fifth, target];
@@ -168,7 +169,27 @@ proptest! {
         let stops = Predicate::Stops.margin(&WORST, given(zone.ego.from - s, 0.0, 0.0));
         let crosses = Predicate::Crosses.margin(&WORST, given(zone.other.from - other, other_speed, target));
         let beyond = Predicate::StopsAfterGoing.margin(&WORST, given(FAR, periods(&given(0.0, 0.0, target)), 0.0));
-        let shield = shield_margin(&ego, &road, (s, speed), (other, other_speed), [previous, command]);
+        let shield = shield_margin(&ego, (&road, Class::Car), (s, speed), (other, other_speed), [previous, command]);
+        prop_assert_eq!(Real::max(stops, Real::min(crosses, beyond)), shield);
+    }
+
+    #[test]
+    fn the_predicate_at_a_pedestrians_crossing_is_the_shields(
+        s in 0.0_f32..60.0, speed in 0.0_f32..20.0, other in 0.0_f32..120.0, walking in 0.0_f32..3.0,
+        previous in -3.0_f32..3.0, command in -3.0_f32..3.0,
+    ) {
+        let (ego, crossing) = (route(&[(-60.0, 0.0), (60.0, 0.0)]), route(&[(0.0, -60.0), (0.0, 60.0)]));
+        let [zone] = zones(&ego, &crossing, Class::Pedestrian)[..] else { panic!("one zone") };
+        prop_assume!(s < zone.ego.to);
+        let command = command.min(choice::most(&WORST, speed, previous));
+        let given = |distance, fifth, target| [speed, previous, command, distance, fifth, target];
+        let target = zone.ego.to - s;
+        let stops = Predicate::Stops.margin(&WORST, given(zone.ego.from - s, 0.0, 0.0));
+        let away = Real::max(zone.other.from - other, other - zone.other.to);
+        let crosses = Predicate::CrossesBeforeWalker.margin(&WORST, given(away, PACE, target));
+        let beyond = Predicate::StopsAfterGoing.margin(&WORST, given(FAR, periods(&given(0.0, 0.0, target)), 0.0));
+        let crossing = (&crossing, Class::Pedestrian);
+        let shield = shield_margin(&ego, crossing, (s, speed), (other, walking), [previous, command]);
         prop_assert_eq!(Real::max(stops, Real::min(crosses, beyond)), shield);
     }
 
@@ -179,7 +200,7 @@ proptest! {
     ) {
         let ego = route(&[(-50.0, -40.0), (0.0, 0.0), (60.0, 0.0)]);
         let road = route(&[(-60.0, 0.0), (60.0, 0.0)]);
-        let [zone] = zones(&ego, &road)[..] else { panic!("one zone") };
+        let [zone] = zones(&ego, &road, Class::Car)[..] else { panic!("one zone") };
         prop_assume!(zone.is_lane() && s < zone.ego.from && other < zone.other.to);
         let command = command.min(choice::most(&WORST, speed, previous));
         let given = |distance, fifth, target| [speed, previous, command, distance, fifth, target];
@@ -194,7 +215,7 @@ proptest! {
             let beyond = Predicate::StopsAfterGoing.margin(&WORST, given(FAR, periods(&given(0.0, 0.0, stop)), 0.0));
             Real::max(Predicate::Stops.margin(&WORST, given(stop, 0.0, 0.0)), Real::min(enters, beyond))
         };
-        let shield = shield_margin(&ego, &road, (s, speed), (other, other_speed), [previous, command]);
+        let shield = shield_margin(&ego, (&road, Class::Car), (s, speed), (other, other_speed), [previous, command]);
         prop_assert_eq!(expected, shield);
     }
 }
@@ -233,24 +254,24 @@ fn route(points: &[(f32, f32)]) -> Route<4> {
 const EGO: PathId = PathId::new(0);
 const ROAD: PathId = PathId::new(1);
 
-fn junction(ego: &Route<4>, road: &Route<4>) -> Junction<2, 8> {
+fn junction(ego: &Route<4>, road: &Route<4>, class: Class) -> Junction<2, 8> {
     let mut builder = Junction::builder();
     builder.tolerance(0.0);
-    for route in [ego, road] {
-        builder.path(route, Class::Car, Footprint::PAPER).unwrap();
+    for (route, class) in [(ego, Class::Car), (road, class)] {
+        builder.path(route, class, Footprint::PAPER).unwrap();
     }
     builder.build().unwrap()
 }
 
-fn zones(ego: &Route<4>, road: &Route<4>) -> Vec<Zone> {
-    let junction = junction(ego, road);
+fn zones(ego: &Route<4>, road: &Route<4>, class: Class) -> Vec<Zone> {
+    let junction = junction(ego, road, class);
     let conflict = junction.conflict(EGO, ROAD).unwrap();
     conflict.zones().copied().collect()
 }
 
 fn shield_margin(
     ego: &Route<4>,
-    road: &Route<4>,
+    (road, class): (&Route<4>, Class),
     own: (f32, f32),
     other: (f32, f32),
     [previous, command]: [f32; 2],
@@ -262,9 +283,9 @@ fn shield_margin(
     };
     let seen = Observation {
         ego: vehicle(ego, own),
-        tracks: &[Track::on(1, ROAD, vehicle(road, other))],
+        tracks: &[Track::on(1, ROAD, vehicle(road, other)).class(class)],
     };
-    let junction = junction(ego, road);
+    let junction = junction(ego, road, class);
     let shield = Shield::<1>::enter(WORST, &junction, EGO).unwrap();
     shield.margin(&seen, previous, command).unwrap()
 }
@@ -291,6 +312,7 @@ fn the_slack_covers_rounding() {
         Predicate::StopsBehind,
         Predicate::StopsAfterGoing,
         Predicate::Crosses,
+        Predicate::CrossesBeforeWalker,
     ] {
         for contract in [WORST, SENSED] {
             let bound = bound(predicate, &contract, 200_000);

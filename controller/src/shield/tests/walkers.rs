@@ -2,6 +2,7 @@
 
 use super::headroom::go;
 use super::*;
+use core::ops::Range;
 use std::vec::Vec;
 
 const PACE: f32 = 2.0;
@@ -163,15 +164,59 @@ fn a_pedestrian_may_point_anywhere_and_runs_out_of_its_pace() {
 fn crossings_without_room_to_watch_are_closed_and_nobody_enters_by_one() {
     let site = crossings();
     let mut run = Run::new(&site, WORST);
-    let tracks: Vec<_> = (0..6_u16)
-        .map(|number| {
-            let mut track = on_foot(&site, 2, [13.9, 0.0]);
-            track.number = number;
-            track
-        })
-        .collect();
+    let tracks = at_the_end(&site, 2, 0..6);
     let decision = run.observe(ego(&site, [20.0, 5.0]), &tracks, 0.0);
     assert_eq!(decision.unwatched, Some(4));
     let refused = Shield::<8>::enter(WORST, &site, PathId::new(1));
     assert!(refused.is_err(), "only the first path can be entered");
+}
+
+/// A pedestrian for each of these numbers, who stands at the end of crossing `crossing`.
+fn at_the_end(site: &Site, crossing: u8, numbers: Range<u16>) -> Vec<Track> {
+    let numbered = |number| {
+        let mut track = on_foot(site, crossing, [13.9, 0.0]);
+        track.number = number;
+        track
+    };
+    numbers.map(numbered).collect()
+}
+
+#[test]
+fn a_crossing_without_room_to_watch_stays_closed_while_somebody_is_missing() {
+    let site = crossings();
+    let mut run = Run::new(&site, WORST);
+    let tracks = at_the_end(&site, 2, 0..5);
+    let own = ego(&site, [20.0, 0.0]);
+    assert_eq!(run.observe(own, &tracks, 0.0).unwatched, Some(4));
+    for _ in 0..50 {
+        assert_eq!(run.observe(own, &tracks[..4], 0.0).unwatched, Some(4));
+    }
+    run.shield.forget(4);
+    assert_eq!(run.observe(own, &tracks[..4], 0.0).unwatched, None);
+}
+
+#[test]
+fn one_who_appears_and_is_not_watched_voids_a_plan_that_passes_its_crossing() {
+    let site = crossings();
+    let mut run = Run::new(&site, WORST);
+    let tracks = at_the_end(&site, 2, 0..5);
+    // Too near to stop.
+    let own = [zone(&site, 2).ego.from - 4.0, 8.0];
+    let decision = run.observe(ego(&site, own), &tracks[..4], 0.0);
+    assert!(decision.plan.is_some_and(|plan| plan.go > 0), "{decision}");
+    let own = [own[0] + 0.8, 8.0];
+    let decision = run.observe(ego(&site, own), &tracks, 0.0);
+    assert_eq!(decision.unwatched, Some(4));
+    assert_eq!(decision.plan, None, "{decision}");
+}
+
+#[test]
+fn whoever_is_at_a_crossing_that_the_ego_has_passed_takes_no_room() {
+    let site = crossings();
+    let mut run = Run::new(&site, WORST);
+    let beyond = zone(&site, 1).ego.to + 0.5;
+    let old = at_the_end(&site, 1, 10..14);
+    run.observe(ego(&site, [beyond - 1.0, 1.0]), &old, 0.0);
+    let decision = run.observe(ego(&site, [beyond, 1.0]), &at_the_end(&site, 2, 0..4), 0.0);
+    assert_eq!(decision.unwatched, None);
 }

@@ -2,8 +2,10 @@
 
 mod aim;
 mod courtesy;
+mod walker;
 
 pub use courtesy::{Duty, Meeting};
+pub use walker::{Gait, Walker};
 
 use crate::motion::State;
 use crate::numbers::{Means, Numbers};

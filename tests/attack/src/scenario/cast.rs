@@ -1,7 +1,8 @@
 //! Who is where at the beginning.
 
 use crate::actuator::Takeover;
-use crate::human::Manner;
+use crate::body::KERB;
+use crate::human::{Gait, Manner};
 use crate::motion::State;
 use crate::numbers::Numbers;
 use crate::plane::separation;
@@ -61,6 +62,8 @@ pub struct Cast {
     pub first_lane: bool,
     /// Shielded vehicles let their turns pass.
     pub hesitant: bool,
+    /// On foot.
+    pub walkers: usize,
 }
 
 /// How often a place for a vehicle is looked for.
@@ -78,6 +81,7 @@ impl Cast {
             manners: Manners::Hostile,
             first_lane: false,
             hesitant: false,
+            walkers: 0,
         }
     }
 
@@ -106,6 +110,9 @@ impl Cast {
                 return None;
             }
         }
+        let walks = site.roads() < site.lanes.len();
+        let walkers = (0..self.walkers).filter(|_| walks);
+        cars.extend(walkers.map(|_| walker(site, rng)));
         (cars.len() >= 2).then_some(cars)
     }
 
@@ -117,7 +124,7 @@ impl Cast {
             Start::Queue if rng.chance(0.75) => 0,
             Start::Platoon if rng.chance(0.6) => 0,
             Start::Platoon if rng.chance(0.7) => 1,
-            _ => rng.below(site.lanes.len()),
+            _ => rng.below(site.roads()),
         }
     }
 
@@ -239,6 +246,25 @@ impl Cast {
             Manners::Leaving => Manner::leaving(rng),
             Manners::Searched => Manner::Profile(vec![0.0; 24]),
         }
+    }
+}
+
+/// Somebody on foot.
+fn walker(site: &Site, rng: &mut Rng) -> Car {
+    let roads = site.roads();
+    let lane = roads + rng.below(site.lanes.len() - roads);
+    let there = &site.lanes[lane];
+    Car {
+        lane,
+        start: State {
+            s: rng.within(KERB, there.line.length() - KERB),
+            v: 0.0,
+        },
+        acceleration: 0.0,
+        driver: Driver::Walker(Gait::random(rng)),
+        cap: there.pace,
+        takeover: Takeover::Prompt,
+        sway: Sway::random(site.tolerance, there.size, rng),
     }
 }
 

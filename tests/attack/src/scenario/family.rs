@@ -79,6 +79,17 @@ const CORNERS: Sensing = Sensing {
     ..Sensing::PLAIN
 };
 
+/// One shielded vehicle among others and up to six on foot: four are watched one by one.
+const ON_FOOT: Family = Family {
+    ways: |rng| sketch::with_crossings(5, Users::Mixed, rng),
+    cast: |rng| Cast {
+        walkers: 1 + rng.below(6),
+        start: rng.pick(&[Start::Moving, Start::Far, Start::Rest]),
+        ..Cast::one(rng.below(4))
+    },
+    ..ONE
+};
+
 /// All of them.
 pub const FAMILIES: &[Family] = &[
     Family {
@@ -210,6 +221,45 @@ pub const FAMILIES: &[Family] = &[
         },
         cast: |rng| Cast::one(1 + rng.below(5)),
         ..ONE
+    },
+    Family {
+        name: "on-foot",
+        about: "pedestrians who walk to and fro, lurk, dart and turn back",
+        ..ON_FOOT
+    },
+    Family {
+        name: "on-foot-gaps",
+        about: "the same, whose tracks are missing for a moment or for seconds, or whose states are not numbers",
+        terms: |rng| Terms::usual(rng).blurred(rng).other_times(rng),
+        sensing: |rng| Sensing {
+            gaps: rng.pick(&[0.01, 0.05, 0.3]),
+            bursts: rng.pick(&[0.0, 0.01, 0.05]),
+            faults: rng.pick(&[0.0, 0.0, 0.02]),
+            ..Sensing::PLAIN
+        },
+        ..ON_FOOT
+    },
+    Family {
+        name: "on-foot-real-car",
+        about: "pedestrians before a real car, whose sensors and drivetrain have all their deviations at once",
+        terms: |rng| Terms::usual(rng).real(rng),
+        sensing: |rng| Sensing {
+            gaps: 0.03,
+            bursts: rng.pick(&[0.0, 0.01]),
+            ..Sensing::PLAIN
+        },
+        ..ON_FOOT
+    },
+    Family {
+        name: "stop-on-foot",
+        about: "vehicles that all have the shield and a rule of precedence, with pedestrians among them",
+        ways: |rng| sketch::with_crossings(5, Users::Cars, rng),
+        cast: |rng| Cast {
+            walkers: 1 + rng.below(4),
+            start: rng.pick(&[Start::Rest, Start::Far]),
+            ..Cast::all(2 + rng.below(3))
+        },
+        ..STOP
     },
     Family {
         name: "gaps",

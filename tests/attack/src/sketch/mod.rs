@@ -2,6 +2,7 @@
 
 mod arms;
 mod corners;
+mod crossings;
 mod free;
 mod pen;
 mod row;
@@ -10,6 +11,7 @@ mod zipper;
 
 pub use arms::{crossroads, merge, star};
 pub use corners::corners;
+pub use crossings::with_crossings;
 pub use free::{across, curves, lanes, near_parallel, weaving, winding, with_bystanders};
 pub use row::row;
 pub use turns::turns;
@@ -27,6 +29,8 @@ pub enum Kind {
     Lorry,
     /// Short and narrow.
     Bicycle,
+    /// On foot: may point anywhere.
+    Pedestrian,
 }
 
 impl Kind {
@@ -37,6 +41,7 @@ impl Kind {
             Self::Car => rng.pick(&[(5.0, 2.0), (4.2, 1.8), (4.6, 1.9)]),
             Self::Lorry => rng.pick(&[(12.0, 2.55), (8.0, 2.5)]),
             Self::Bicycle => rng.pick(&[(1.8, 0.6), (2.1, 0.8)]),
+            Self::Pedestrian => rng.pick(&[(0.5, 0.5), (0.8, 0.8)]),
         };
         Size { length, width }
     }
@@ -57,6 +62,8 @@ pub struct Way {
     pub kind: Kind,
     /// Their footprint.
     pub size: Size,
+    /// The highest speed (m/s) of those on foot, either way; 0 of vehicles.
+    pub pace: f64,
     /// Ways with the same number share their points up to where they part.
     pub entry: usize,
     /// Its parts in junctions.
@@ -87,6 +94,7 @@ impl Way {
             points,
             kind,
             size,
+            pace: 0.0,
             entry,
             cuts: vec![cut],
         }

@@ -26,6 +26,7 @@ fn road(rng: &mut Rng) -> Way {
     let points = stations.map(|x| [x as f32, 0.0]).to_vec();
     let cut = |junction, from, to| Cut { junction, from, to };
     Way {
+        pace: 0.0,
         points,
         kind,
         size,
