@@ -22,6 +22,7 @@ mod safety;
 mod scene;
 mod settings;
 mod source;
+mod svg;
 mod table;
 mod threads;
 mod training;

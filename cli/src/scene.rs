@@ -1,12 +1,10 @@
 //! A drawing of a site from above: its map, the vehicles' tracks, and the conflict points.
 
-use crate::failure::Failure;
 use crate::plural::Count;
 use cede_controller::ConflictKind;
 use cede_data::lanelet::{Lanelet, LineKind, Map, Regulation, RegulationKind};
-use cede_data::{Dataset, Manoeuvre, output};
+use cede_data::{Dataset, Manoeuvre};
 use std::fmt::Write as _;
-use std::path::Path;
 
 /// Pixels per metre.
 const SCALE: f64 = 8.0;
@@ -25,14 +23,8 @@ const MANOEUVRES: [(Manoeuvre, &str, &str); 4] = [
     (Manoeuvre::Unknown, "other", "#71717a"),
 ];
 
-/// Writes the drawing to `path`.
-pub(crate) fn write(path: &Path, dataset: &Dataset) -> Result<(), Failure> {
-    let svg = svg(dataset);
-    output::write(path, |out| out.write_all(svg.as_bytes()))?;
-    Ok(())
-}
-
-fn svg(dataset: &Dataset) -> String {
+/// The drawing, as SVG.
+pub(crate) fn svg(dataset: &Dataset) -> String {
     let view = View::of(dataset);
     let mut svg = view.header();
     if let Some(map) = &dataset.map {

@@ -193,6 +193,7 @@ const CASES: &[Case] = &[
     ("verify campaign --scenarios 9 --steps 9", 2, "cannot be used with"),
     ("verify campaign --seed 18446744073709551615", 2, "is not in 0..=9223372036854775807"),
     ("verify beyond --encounters 0", 2, "0 is not in 1.."),
+    ("verify beyond --draw beyond.png", 2, "the file's name has to end in .svg"),
 ];
 
 #[test]

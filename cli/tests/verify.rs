@@ -15,10 +15,31 @@ fn too_few_boxes_show_nothing_and_name_the_inputs() {
     );
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     let rows = report["margins"].as_array().unwrap();
-    assert_eq!(rows.len(), 10);
+    assert_eq!(rows.len(), 12);
     let stops = &rows[0];
     assert_eq!(stops["verdict"], "proved");
     assert!(stops["met_m"].as_f64() <= stops["at_most_m"].as_f64());
+}
+
+#[test]
+fn what_is_beyond_the_contract_is_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("beyond.svg");
+    let mut command = cargo_bin_cmd!("cede");
+    command.args(["verify", "beyond", "--encounters", "2", "--draw"]);
+    assert!(command.arg(&file).output().unwrap().status.success());
+    let drawn = std::fs::read_to_string(&file).unwrap();
+    assert!(drawn.starts_with("<svg") && drawn.ends_with("</svg>\n"));
+    for text in [
+        "no guard",
+        "plain rule",
+        "shield",
+        "hostile",
+        "gentle",
+        "latency 2 ×",
+    ] {
+        assert!(drawn.contains(text), "{text}");
+    }
 }
 
 #[test]

@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::plural::Count;
 use crate::scene;
 use crate::source::{Source, not_empty};
+use crate::svg;
 use cede_data::{Distribution, RightsSummary, Rule, Summary};
 use std::path::PathBuf;
 
@@ -13,7 +14,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     source: Source,
     /// Path of the drawing (SVG)
-    #[arg(long, default_value = "out/scene.svg", value_name = "FILE.svg", value_parser = svg)]
+    #[arg(long, default_value = "out/scene.svg", value_name = "FILE.svg", value_parser = svg::path)]
     draw: PathBuf,
     /// Seed of synthetic encounters [default: 0]
     #[arg(long)]
@@ -23,23 +24,12 @@ pub(crate) struct Args {
     json: bool,
 }
 
-/// The path of a drawing.
-fn svg(path: &str) -> Result<PathBuf, &'static str> {
-    let path = PathBuf::from(path);
-    if path.extension().is_some_and(|ending| ending == "svg") {
-        Ok(path)
-    } else {
-        Err("drawings are SVG: the file's name has to end in .svg")
-    }
-}
-
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let dataset = args.source.load_one_seeded("--seed", args.seed, 0)?;
     super::name_passed_over(&dataset);
     let summary = Summary::of(&dataset);
-    scene::write(&args.draw, &dataset)?;
-    note!("drawn in {}", args.draw.display());
+    svg::save(&args.draw, &scene::svg(&dataset))?;
     if args.json {
         super::print_json(&summary)?;
     } else {

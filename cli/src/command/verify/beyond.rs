@@ -1,12 +1,16 @@
 //! `cede verify beyond`: encounters in which one number of the contract does not hold.
 
+mod chart;
+
 use super::checked::{Check, Checked, Finding};
 use crate::contract::{self, Named};
 use crate::failure::Failure;
 use crate::safety::Kind;
+use crate::svg;
 use crate::threads::Threads;
 use cede_sim::campaign::beyond::{Count, Guard, ROWS, Row, Temper, beyond};
 use clap::Args;
+use std::path::PathBuf;
 
 /// The text below the options in `cede help verify beyond`.
 const HELP: &str = "\
@@ -31,6 +35,9 @@ pub(crate) struct Beyond {
     /// Seed of the first encounter.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(..=u64::MAX / 2))]
     seed: u64,
+    /// Also draw the table as bars, in this file (SVG).
+    #[arg(long, value_name = "FILE.svg", value_parser = crate::svg::path)]
+    draw: Option<PathBuf>,
     #[command(flatten)]
     threads: Threads,
     /// Print one JSON object instead.
@@ -83,6 +90,9 @@ impl Beyond {
 impl Check for Beyond {
     fn check(&self) -> Result<Checked, Failure> {
         let lines = self.lines()?;
+        if let Some(path) = &self.draw {
+            svg::save(path, &chart::svg(&lines))?;
+        }
         let within = shielded(lines.iter().filter(|line| line.row == ROWS[0]));
         let all = shielded(lines.iter());
         let said = format!(
