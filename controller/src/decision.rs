@@ -2,7 +2,7 @@
 
 use crate::fault::Fault;
 use crate::headroom::Headroom;
-use crate::shield::{Contract, Plan};
+use crate::plan::Plan;
 use core::fmt;
 
 /// The ego's acceleration for the period that begins, and why it is what it is.
@@ -148,10 +148,10 @@ pub enum Breach {
 }
 
 impl Decision {
-    /// Before anything was decided: braking.
-    pub(crate) const fn none(contract: &Contract) -> Self {
+    /// Nothing was decided: the ego's `acceleration` (m/s²) is that of its brakes.
+    pub(crate) const fn none(acceleration: f32) -> Self {
         Self {
-            acceleration: -contract.ego().braking,
+            acceleration,
             cause: Cause::Fallback(Fault::NoPlan),
             margin: 0.0,
             plan: None,

@@ -96,6 +96,7 @@ mod instant;
 pub mod junction;
 pub mod kinematics;
 mod observation;
+mod plan;
 pub mod policy;
 mod real;
 pub mod separation;

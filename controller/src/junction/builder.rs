@@ -1,25 +1,20 @@
 //! Builds a junction from routes, footprints, lines and rights of way.
 
 use crate::geometry::{Footprint, Point, length};
-use crate::junction::conflict::{ConflictKind, Priority, RightOfWay, RouteConflict};
+use crate::junction::conflict::{Priority, RightOfWay, RouteConflict};
 use crate::junction::control::Control;
 use crate::junction::error::JunctionError;
-use crate::junction::meeting::within;
+use crate::junction::kind::ConflictKind;
 use crate::junction::path::{
     Class, MAX_FOOTPRINT, MAX_PACE, MAX_PATH_LENGTH, MAX_SPEED_LIMIT, PACE, Path, PathId,
     SpeedLimit,
 };
 use crate::junction::polyline::Polyline;
-use crate::junction::prepared::Junction;
+use crate::junction::polyline::within;
+use crate::junction::prepared::{Junction, MAX_LATERAL, MAX_TOLERANCE};
 use crate::junction::route::Route;
 use crate::junction::zone::{Body, sharp_kink};
 use heapless::Vec;
-
-/// Largest tolerance of a junction in metres.
-pub const MAX_TOLERANCE: f32 = 1.0;
-
-/// Largest lateral acceleration of a junction in m/s².
-pub const MAX_LATERAL: f32 = 20.0;
 
 /// The tolerance (m) of a junction that was not given one.
 const TOLERANCE: f32 = 0.1;
@@ -36,6 +31,14 @@ pub struct JunctionBuilder<const R: usize, const P: usize, const E: usize> {
 impl<const R: usize, const P: usize, const E: usize> Default for JunctionBuilder<R, P, E> {
     fn default() -> Self {
         Self::new()
+    }
+}
+
+impl<const R: usize, const P: usize, const E: usize> Junction<R, P, E> {
+    /// A builder without paths.
+    #[must_use]
+    pub fn builder() -> JunctionBuilder<R, P, E> {
+        JunctionBuilder::new()
     }
 }
 

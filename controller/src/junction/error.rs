@@ -1,10 +1,9 @@
 //! Why a junction cannot be built.
 
-use crate::junction::builder::MAX_LATERAL;
-use crate::junction::builder::MAX_TOLERANCE;
 use crate::junction::path::{
     MAX_FOOTPRINT, MAX_LIMITS, MAX_PACE, MAX_PATH_LENGTH, MAX_SPEED_LIMIT, PathId,
 };
+use crate::junction::prepared::{MAX_LATERAL, MAX_TOLERANCE};
 use core::fmt::{Display, Formatter, Result};
 
 /// Why a junction cannot be built. Its display says what to do about it.

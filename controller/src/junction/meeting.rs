@@ -1,7 +1,7 @@
 //! The conflict point of two routes, which the policy counts distances to.
 
 use crate::geometry::Point;
-use crate::junction::polyline::{Piece, Polyline};
+use crate::junction::polyline::{Piece, Polyline, within};
 use crate::junction::zone::{Span, Zone, Zones};
 use crate::real::sqrt;
 
@@ -24,17 +24,6 @@ pub(super) fn conflict_points(
             within(zone.other.from, other.length()),
         ),
         (None, None) => (ego.length(), other.length()),
-    }
-}
-
-/// `value` in [0, `length`].
-pub(super) fn within(value: f32, length: f32) -> f32 {
-    if value < 0.0 {
-        0.0
-    } else if value > length {
-        length
-    } else {
-        value
     }
 }
 

@@ -4,6 +4,7 @@ mod builder;
 pub(crate) mod conflict;
 mod control;
 mod error;
+pub(crate) mod kind;
 mod meeting;
 mod path;
 mod polyline;
@@ -15,17 +16,18 @@ mod tests;
 mod way;
 pub mod zone;
 
-pub use builder::{JunctionBuilder, MAX_LATERAL, MAX_TOLERANCE};
-pub use conflict::{ConflictKind, Priority, RightOfWay, RouteConflict};
+pub use builder::JunctionBuilder;
+pub use conflict::{Priority, RightOfWay, RouteConflict};
 pub use control::Control;
 pub use error::JunctionError;
+pub use kind::ConflictKind;
 pub use meeting::CONFLICT_RADIUS;
 pub use path::{
     Class, MAX_FOOTPRINT, MAX_LIMITS, MAX_PACE, MAX_PATH_LENGTH, MAX_SPEED_LIMIT, PACE, Path,
     PathId, SpeedLimit,
 };
 pub use polyline::Polyline;
-pub use prepared::Junction;
+pub use prepared::{Junction, MAX_LATERAL, MAX_TOLERANCE};
 pub use profile::{COMFORT, Profile};
 pub use route::{Route, RouteError};
 pub use way::Way;

@@ -1,7 +1,6 @@
 //! Points with their arc lengths, wherever they are kept.
 
 use crate::geometry::{Point, Pose, Vector, distance, unit};
-use crate::junction::meeting::within;
 
 /// A view of a polyline, addressed by arc length `s` in metres from its first point.
 ///
@@ -110,5 +109,16 @@ impl<'a> Polyline<'a> {
             }
         }
         best.1
+    }
+}
+
+/// `value` in [0, `length`].
+pub(super) fn within(value: f32, length: f32) -> f32 {
+    if value < 0.0 {
+        0.0
+    } else if value > length {
+        length
+    } else {
+        value
     }
 }

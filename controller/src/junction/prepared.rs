@@ -1,12 +1,17 @@
 //! A junction: its routes and how each two of them meet, prepared once for all vehicles.
 
 use crate::geometry::Point;
-use crate::junction::builder::JunctionBuilder;
 use crate::junction::conflict::RouteConflict;
 use crate::junction::path::{Class, MAX_LIMITS, Path, PathId, SpeedLimit};
 use crate::junction::polyline::Polyline;
 use crate::junction::way::Way;
 use heapless::Vec;
+
+/// Largest tolerance of a junction in metres.
+pub const MAX_TOLERANCE: f32 = 1.0;
+
+/// Largest lateral acceleration of a junction in m/s².
+pub const MAX_LATERAL: f32 = 20.0;
 
 /// Up to `R` paths with `P` points in all, of which the first `E` can be entered.
 ///
@@ -48,12 +53,6 @@ pub struct Junction<const R: usize, const P: usize, const E: usize = R> {
 }
 
 impl<const R: usize, const P: usize, const E: usize> Junction<R, P, E> {
-    /// A builder without paths.
-    #[must_use]
-    pub fn builder() -> JunctionBuilder<R, P, E> {
-        JunctionBuilder::new()
-    }
-
     /// The paths; a [`PathId`] is an index into them.
     #[must_use]
     pub fn paths(&self) -> &[Path] {

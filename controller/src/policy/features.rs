@@ -1,8 +1,8 @@
 //! What the network is told about a [`Pair`], and how it is scaled.
 
 use crate::junction::Control;
-use crate::junction::conflict::ConflictKind;
 use crate::junction::conflict::RightOfWay;
+use crate::junction::kind::ConflictKind;
 use crate::policy::pair::{Crosser, Leader, Pair, VehicleState};
 use crate::real::Elementary;
 

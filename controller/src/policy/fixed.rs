@@ -1,8 +1,8 @@
 //! The network in integers: weights and activations `i16`, sums `i32`. For cores without an FPU, and for half the flash.
 
+use crate::policy::error::WeightsError;
 use crate::policy::features::MAX_FEATURES;
 use crate::policy::mlp::{LANES, MAX_WIDTH, OUTPUTS};
-use crate::policy::weights::WeightsError;
 
 /// Neurons summed side by side: as many as a core of 13 registers holds the sums and weights of.
 const ABREAST: usize = 4;

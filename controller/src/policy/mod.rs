@@ -2,6 +2,7 @@
 
 #[cfg(feature = "embedded-policy")]
 pub mod embedded;
+mod error;
 pub mod features;
 pub mod fixed;
 pub mod mlp;
@@ -10,12 +11,13 @@ pub mod svo;
 pub(crate) mod traffic;
 pub mod weights;
 
+pub use error::WeightsError;
 pub use features::FeatureSet;
 pub use fixed::FixedMlp;
 pub use mlp::Mlp;
 pub use pair::{Crosser, Leader, Pair, Part, VehicleState};
 pub use traffic::{NearbyVehicle, TrafficContext};
-pub use weights::{Network, Perspective, Weights, WeightsError};
+pub use weights::{Network, Perspective, Weights};
 
 #[cfg(doc)]
 use crate::policy::features::LIMIT;
@@ -115,8 +117,8 @@ mod tests {
     use super::*;
     use crate::geometry::{Footprint, Point, Pose, unit};
     use crate::junction::Control;
-    use crate::junction::conflict::ConflictKind;
     use crate::junction::conflict::RightOfWay;
+    use crate::junction::kind::ConflictKind;
     use crate::policy::features::FeatureSet;
     use crate::policy::pair::testing::pair;
     use crate::policy::pair::{Crosser, Leader, VehicleState};

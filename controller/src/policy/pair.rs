@@ -2,7 +2,8 @@
 
 use crate::geometry::{Footprint, Pose, UnitVector};
 use crate::junction::Control;
-use crate::junction::conflict::{ConflictKind, RightOfWay};
+use crate::junction::conflict::RightOfWay;
+use crate::junction::kind::ConflictKind;
 use crate::real::Elementary;
 use core::f32::consts::FRAC_PI_2;
 use nalgebra::Scalar;

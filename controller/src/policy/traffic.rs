@@ -1,6 +1,7 @@
 //! The traffic around a pair: who is ahead in the ego's lane, and who else is about to cross its way.
 
-use crate::junction::conflict::{ConflictKind, RouteConflict};
+use crate::junction::conflict::RouteConflict;
+use crate::junction::kind::ConflictKind;
 use crate::policy::pair::{Crosser, Leader};
 
 /// What surrounds the ego, beside the other vehicle of the pair.

@@ -8,13 +8,10 @@
 //! and every fall late by the time constant, and at least what it would be the other way round: for bounds, the time constant
 //! is added to the latency. `docs/theorem.md` has the proof.
 
-use super::contract::Contract;
+use super::contract::{Contract, FLIGHTS};
 use crate::instant::{Instant, micros};
 use crate::real::Real;
 use heapless::{Deque, Vec};
-
-/// Commands in flight at most: so many periods may the latency last.
-pub const FLIGHTS: usize = 10;
 
 /// What acts: every command in flight, the one before them, and the acceleration itself.
 const PARTS: usize = FLIGHTS + 2;

@@ -2,10 +2,10 @@
 
 use super::bounds::Bounds;
 use super::contract::Contract;
-use super::hazard;
+use super::lane;
+use super::other::{News, Other};
 use super::own::Own;
 use super::rules::Rules;
-use super::tracks::{News, Other};
 use crate::headroom::Room;
 use crate::instant::Instant;
 use crate::junction::zone::{FAR, Span};
@@ -227,7 +227,7 @@ impl Hidden {
             let bounds = edge.bounds::<R>(contract, self.now);
             let mut other = Other::at(0, edge.path, 0.0, bounds, self.now);
             if let Some(conflict) = way.conflict(edge.path) {
-                hazard::settle::<R>(contract, conflict.zones(), ego, &mut other);
+                lane::settle::<R>(contract, conflict.zones(), ego, &mut other);
             }
             other.news = if edge.fresh {
                 News::Appeared

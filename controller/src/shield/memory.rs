@@ -5,12 +5,12 @@ use super::bounds::Bounds;
 use super::contract::Contract;
 use super::margin;
 use super::own::Own;
-use super::plan::Plan;
 use super::reach::Reach;
 use crate::headroom::Room;
 use crate::instant::{Instant, micros};
 use crate::junction::zone::{FAR, Span};
 use crate::observation::Vehicle;
+use crate::plan::Plan;
 
 /// What is left of the plan that was verified last.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -168,13 +168,11 @@ impl PairMemory {
         if R::ends(perhaps, surely, begins, patience) {
             self.turn = Turn::Past;
         }
-        // The rest of the pair is that of the one whose rest is known. It is nobody's turn if neither is known, or if
-        // both are needed to tell who comes first.
+        // A rest that is unknown counts as `u16::MAX`: of the two, the known one counts. It is nobody's turn if neither is known,
+        // or if one is not and, without an order in turns, both are needed to tell who comes first.
         let counted = perhaps < u16::MAX
             && (right.in_turns != RightOfWay::Unsettled
                 || mine.perhaps < u16::MAX && theirs.perhaps < u16::MAX);
-        // The first turn is the one's who came first, which is an order of any number of vehicles. Of two that still
-        // rest, the second is the one's who gives way, the third the other's, and so on.
         // The first two turns are the one's who comes second, the next two the other's, and so on.
         let owner = self.first(contract, right.in_turns, ego) == Some((turn / 2) % 2 == 1);
         if surely == begins.saturating_add(R::grace(contract)) && counted && owner {

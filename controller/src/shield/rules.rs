@@ -4,10 +4,10 @@ use super::actuation::Inherited;
 use super::bounds::Bounds;
 use super::contract::Contract;
 use super::margin::{self, Departure};
-use super::plan::Plan;
 use super::reach::Reach;
 use super::waiting;
 use crate::junction::zone::Zone;
+use crate::plan::Plan;
 
 /// The rules, one method each. [`Sound`] is the only implementation that drives.
 ///

@@ -1,6 +1,7 @@
 //! Properties of the shield on its own: total, dimensionless, symmetric, monotone; and what it says.
 
 use super::*;
+use crate::decision::{Breach, Cause, Intervention, Reason};
 use crate::geometry::{Footprint, Point, Pose, unit};
 use crate::junction::zone::Span;
 use crate::junction::{Class, Route, Zone};

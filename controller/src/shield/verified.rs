@@ -1,11 +1,12 @@
 //! The search for a plan that keeps the guarantee.
 
 use super::contract::Contract;
-use super::hazard::{Hazard, Hazards, Passage};
+use super::hazard::{Hazard, Passage};
+use super::hazards::Hazards;
 use super::margin::{self, Departure};
-use super::plan::Plan;
 use super::rules::Rules;
 use crate::junction::zone::FAR;
+use crate::plan::Plan;
 use crate::real::Real;
 
 /// Clearing that takes longer than this (s) is not planned.

@@ -2,9 +2,9 @@
 
 use super::contract::Contract;
 use super::door;
+use super::findings::Findings;
 use super::hazard::{Hazard, Passage, Who};
 use super::own::Own;
-use super::tracks::Findings;
 use super::unwatched::{Place, Unwatched, first_zone, unplaced};
 use crate::headroom::Room;
 use crate::instant::Instant;

@@ -13,18 +13,22 @@
 //! [`INFLATION`] for rounding and by the junction's tolerance.
 
 mod body;
+mod cell;
 mod clip;
 #[cfg(test)]
 mod cover;
 mod join;
 mod near;
+mod patch;
 
-use crate::junction::conflict::ConflictKind;
+use crate::junction::kind::ConflictKind;
 pub(crate) use body::{Body, sharp_kink};
 use body::{Motion, Stage};
-use clip::{Cell, meet};
-use join::{Patch, covered, insert};
+use cell::Cell;
+use clip::meet;
+use join::{covered, insert};
 use near::near_pieces;
+use patch::Patch;
 
 /// Most zones of one pair of routes; if the routes meet more often, the last zone covers the rest.
 pub const MAX_ZONES: usize = 3;

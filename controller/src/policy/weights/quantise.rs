@@ -1,6 +1,6 @@
 //! A network becomes one of integers.
 
-use super::Draft;
+use super::draft::Draft;
 use crate::policy::fixed::{Bits, MAX_ACTIVATION, layer_words, pair, power_of_two, rows, sum_fits};
 use crate::policy::mlp::OUTPUTS;
 

@@ -1,7 +1,6 @@
 //! What is demanded of each number of a contract.
 
-use super::{Contract, Precedence};
-use crate::shield::actuation::FLIGHTS;
+use super::{Contract, FLIGHTS, Precedence};
 
 /// The first number of a [`Contract`] that is out of its range. Prints as `ego.braking = 9 is outside (0, 8]`, with
 /// a reason where the range depends on other numbers.

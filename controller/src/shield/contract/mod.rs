@@ -8,6 +8,9 @@ mod serial;
 pub use builder::ContractBuilder;
 pub use demand::ContractError;
 
+/// Commands in flight at most: so many periods may the latency last.
+pub const FLIGHTS: usize = 10;
+
 /// The assumptions under which the shield's guarantee holds.
 ///
 /// Guarantee: the ego is never in a conflict zone together with another vehicle, and never

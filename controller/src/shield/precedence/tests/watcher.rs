@@ -6,7 +6,7 @@ use super::super::super::rules::Rules;
 use super::super::super::waiting::{Presence, RestState, Sighting};
 use super::super::{ALL, PairMemory, Right, ZoneSet};
 use crate::instant::Instant;
-use crate::junction::conflict::ConflictKind;
+use crate::junction::kind::ConflictKind;
 use crate::junction::zone::{FAR, Span, Zone};
 use crate::junction::{Priority, RightOfWay};
 

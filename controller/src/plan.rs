@@ -7,7 +7,7 @@
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Plan {
-    /// For so many periods the ego accelerates at [`super::Ego::go`]; then it brakes.
+    /// For so many periods the ego accelerates at [`crate::Ego::go`]; then it brakes.
     pub go: u16,
 }
 

@@ -1,0 +1,206 @@
+//! All hazards at once, sorted, and where the ego comes to rest before them.
+
+use super::contract::Contract;
+use super::hazard::{Hazard, Passage, Who, arrival, of};
+use super::hidden::MAX_SIGHTS;
+use super::other::Other;
+use super::own::Own;
+use super::precedence::has;
+use super::reach::Reach;
+use super::rules::Rules;
+use super::tracks::Tracks;
+use super::unwatched::Closed;
+use super::walkers::MAX_WALKERS;
+use crate::junction::zone::{FAR, MAX_ZONES, Zone};
+use crate::junction::{MAX_OTHERS, RightOfWay, RouteConflict, Way};
+use crate::real::Real;
+use heapless::Vec;
+
+/// Every zone of every other, of everybody out of sight and of every pedestrian, and what is closed.
+const CAPACITY: usize = (MAX_OTHERS + MAX_SIGHTS + MAX_WALKERS) * MAX_ZONES + 1;
+
+/// An ego that comes to rest no farther beyond its line than this (m) waits at it.
+const BEYOND: f32 = 1.0;
+
+/// The hazards, sorted by [`Hazard::target`].
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Hazards {
+    sorted: Vec<Hazard, CAPACITY>,
+}
+
+impl Hazards {
+    /// No hazards.
+    pub(super) const fn new() -> Self {
+        Self { sorted: Vec::new() }
+    }
+
+    /// Adds the hazards of everybody who matters, but for those that the rule of precedence takes away. In place,
+    /// because they are the largest thing on the stack.
+    ///
+    /// Cost: O(zones²) for the sorting, at most 61².
+    pub(super) fn add<const N: usize, R: Rules>(
+        &mut self,
+        contract: &Contract,
+        way: Way<'_>,
+        (ego, tracks): (&Own, &Tracks<N>),
+        closed: Option<Closed>,
+    ) {
+        // From where the first zone that precedence opens begins to where the last one ends.
+        let mut open = [FAR, -FAR];
+        for (place, other) in (0_u8..).zip(tracks.iter()) {
+            let number = other.number;
+            let who = Who::Watched { number, place };
+            self.add_other::<R>((contract, way), (ego, other), who, &mut open);
+        }
+        for other in tracks.hidden.others::<R>(contract, way, ego) {
+            let who = Who::Hidden(other.path);
+            self.add_other::<R>((contract, way), (ego, &other), who, &mut open);
+        }
+        for hazard in tracks.walkers.hazards(contract, way, ego) {
+            self.insert::<R>(hazard);
+        }
+        if open[0] >= 0.0 {
+            self.keep_clear(open);
+        }
+        if let Some(closed) = closed {
+            self.insert::<R>(Hazard::closed(contract, ego, closed));
+        }
+        self.look_beyond();
+    }
+
+    /// Adds the hazards of one other, and notes those that precedence opens.
+    #[inline(never)] // Once in flash.
+    fn add_other<R: Rules>(
+        &mut self,
+        (contract, way): (&Contract, Way<'_>),
+        (ego, other): (&Own, &Other),
+        who: Who,
+        open: &mut [f32; 2],
+    ) {
+        let Some(conflict) = way.conflict(other.path) else {
+            return;
+        };
+        for (zone, hazard) in of::<R>(contract, way, ego, other) {
+            if has(other.claims, hazard.zone)
+                && granted(contract, way, hazard.passage, zone, (ego, other))
+            {
+                let entry = zone.ego.from - ego.s - contract.position_error;
+                *open = [Real::min(open[0], entry), Real::max(open[1], hazard.target)];
+                continue;
+            }
+            let clear = clear_of::<R>(conflict, zone, ego, other);
+            let clear = clear - ego.s - contract.position_error;
+            let waits = !zone.is_lane() && clear >= 0.0;
+            self.insert::<R>(Hazard {
+                who,
+                yields: conflict.right_of_way == RightOfWay::Other,
+                rest: if waits { clear } else { hazard.rest },
+                ..hazard
+            });
+        }
+    }
+
+    /// In zones that precedence opens, the ego waits only for those who have the right of way. Whoever it holds up there
+    /// may hold up others: if all waited so, each in the way of the next, their rights would form a cycle.
+    ///
+    /// It may still come to rest there behind those who are ahead in its lane.
+    fn keep_clear(&mut self, [from, to]: [f32; 2]) {
+        for hazard in &mut self.sorted {
+            let waits = !matches!(hazard.passage, Passage::Never);
+            if waits && !hazard.yields && (from..to).contains(&hazard.limit) {
+                hazard.rest = Real::min(hazard.rest, from);
+            }
+        }
+    }
+
+    /// The ego waits at its line, `line` metres ahead, for everybody but those that it follows: inside the junction it
+    /// would be in the way of others. It comes to rest `stop` metres ahead at the earliest; once that is too far beyond
+    /// the line, it is on its way.
+    pub(super) fn wait_at(&mut self, line: f32, stop: f32) {
+        if stop > line + BEYOND {
+            return;
+        }
+        for hazard in &mut self.sorted {
+            if !matches!(hazard.passage, Passage::Never) {
+                hazard.rest = Real::min(hazard.rest, Real::max(line, stop));
+            }
+        }
+        self.look_beyond();
+    }
+
+    pub(super) fn iter(&self) -> impl Iterator<Item = &Hazard> {
+        self.sorted.iter()
+    }
+
+    /// Where the ego comes to rest before all of them.
+    pub(super) fn nearest_rest(&self) -> f32 {
+        self.sorted
+            .first()
+            .map_or(FAR, |first| Real::min(first.rest, first.rest_beyond))
+    }
+
+    fn insert<R: Rules>(&mut self, hazard: Hazard) {
+        // 8 others, 8 edges of sight and 4 pedestrians of 3 zones each, and what is closed: `Shield` and `MAX_ZONES` see to it that there are no more.
+        let _ = self.sorted.push(hazard);
+        for i in (1..self.sorted.len()).rev() {
+            if let Some([before, after]) = self.sorted.get_mut(i - 1..=i)
+                && R::sooner(after.target, before.target)
+            {
+                core::mem::swap(before, after);
+            }
+        }
+    }
+
+    fn look_beyond(&mut self) {
+        let mut least = FAR;
+        for hazard in self.sorted.iter_mut().rev() {
+            hazard.rest_beyond = least;
+            least = Real::min(least, hazard.rest);
+        }
+    }
+}
+
+/// Arc length (m) at which the ego waits for `other` before the crossing `zone`: where crossings of the two follow each other without
+/// a gap, before the first of them. Two that stood in different ones, each before the other's, would wait for ever.
+fn clear_of<R: Rules>(conflict: &RouteConflict, zone: &Zone, ego: &Own, other: &Other) -> f32 {
+    if zone.is_lane() {
+        return zone.ego.from;
+    }
+    let open =
+        |it: &&Zone| !it.is_lane() && ego.least < it.ego.to && !R::left(it, other.bounds.s.from);
+    // As often as there are zones before the last one.
+    (1..MAX_ZONES).fold(zone.ego.from, |from, _| {
+        let meets = |it: &&Zone| it.ego.from < from && from <= it.ego.to;
+        let before = conflict.zones().filter(open).filter(meets);
+        before.map(|it| it.ego.from).fold(from, Real::min)
+    })
+}
+
+/// Whether a zone in which the ego has precedence is no hazard: the other can still stop before it, and
+/// stays out of it for as long as the ego likes. The ego may even wait in it.
+///
+/// A lane only once the ego has arrived at its line: until then, one that has to wait may enter ahead of it with the safe
+/// gap.
+fn granted(
+    contract: &Contract,
+    way: Way<'_>,
+    passage: Passage,
+    zone: &Zone,
+    (ego, other): (&Own, &Other),
+) -> bool {
+    let Some(rule) = contract.precedence else {
+        return false;
+    };
+    let settled = match passage {
+        Passage::Before { .. } => true,
+        Passage::Ahead { .. } => ego.least >= arrival(way, rule, way.ego()),
+        Passage::Walks { .. } | Passage::Never => false,
+    };
+    let farthest = Reach {
+        distance: other.bounds.s.to,
+        speed: other.bounds.speed.to,
+    };
+    // Who stands at the very edge of its zone may take itself for one that is in it; one that is shielded rests a whole
+    // slack before it.
+    settled && zone.other.from - 0.5 * contract.slack >= farthest.rest(rule.braking)
+}

@@ -1,0 +1,93 @@
+//! What a decision is made of, once the observation is noted, and which plan is best there.
+
+use super::actuation::Inherited;
+use super::choice::{allowed, most};
+use super::contract::Contract;
+use super::hazard::Passage;
+use super::hazards::Hazards;
+use super::own::Own;
+use super::rules::Rules;
+use super::tracks::Tracks;
+use super::unwatched::Closed;
+use super::verified::{Verified, best};
+use crate::junction::Way;
+
+/// An ego without a safe plan that is less than this (m) in a zone stays there.
+const NOSE: f32 = 0.5;
+
+/// The hazards ahead of the ego, and what it may command.
+pub(super) struct Scene<'s> {
+    pub(super) ego: &'s Own,
+    pub(super) hazards: &'s Hazards,
+    /// What acts until the command is followed.
+    pub(super) inherited: &'s Inherited<f32>,
+    /// The hardest acceleration that may be commanded.
+    pub(super) most: f32,
+}
+
+impl<'s> Scene<'s> {
+    /// What is ahead of the ego while `in_effect` (m/s²) is the most that acts. `hazards`, empty, is filled in place, because it
+    /// is the largest thing on the stack.
+    pub(super) fn new<const N: usize, R: Rules>(
+        (contract, way): (&Contract, Way<'_>),
+        (ego, tracks): (&'s Own, &Tracks<N>),
+        closed: Option<Closed>,
+        (inherited, in_effect): (&'s Inherited<f32>, f32),
+        hazards: &'s mut Hazards,
+    ) -> Self {
+        hazards.add::<N, R>(contract, way, (ego, tracks), closed);
+        let most = most(contract, ego.speed, in_effect);
+        wait_at_line::<R>(contract, way, ego, (inherited, most), hazards);
+        Self {
+            ego,
+            hazards,
+            inherited,
+            most,
+        }
+    }
+
+    /// The best plan after one period at `command`.
+    pub(super) fn check<R: Rules>(&self, contract: &Contract, command: f32) -> Verified {
+        let departure = R::departure(contract, self.ego.speed, self.inherited, command);
+        best::<R>(contract, self.hazards, &departure)
+    }
+
+    /// Whether an ego without a safe plan accelerates out of its zones instead of braking: it stands in zones, none
+    /// of the others may be in its own, and nobody stands in the way until the ego would be at rest again.
+    pub(super) fn leaves<R: Rules>(&self, contract: &Contract) -> bool {
+        let go = allowed(&contract.ego, self.most, contract.ego.go);
+        let departure = R::departure(contract, self.ego.speed, self.inherited, go);
+        let rest = R::rest(contract, departure.braking, 0.0);
+        let outside = |passage| match passage {
+            Passage::Before { distance, .. } | Passage::Walks { distance, .. } => distance > 0.0,
+            // It comes from behind.
+            Passage::Ahead { gap, .. } => gap > 0.0,
+            Passage::Never => false,
+        };
+        let inside = |limit: f32| limit < -NOSE;
+        let stands_in_one = self.hazards.iter().any(|hazard| inside(hazard.limit));
+        stands_in_one
+            && self.hazards.iter().all(|hazard| {
+                let free = outside(hazard.passage);
+                let short = R::stops_short(contract, hazard.limit, rest) >= 0.0;
+                free || (!inside(hazard.limit) && short)
+            })
+    }
+}
+
+/// Has the ego wait at its line, if the junction was told it.
+fn wait_at_line<R: Rules>(
+    contract: &Contract,
+    way: Way<'_>,
+    ego: &Own,
+    (inherited, most): (&Inherited<f32>, f32),
+    hazards: &mut Hazards,
+) {
+    let Some(path) = way.path(way.ego()).filter(|path| path.waits_at_line()) else {
+        return;
+    };
+    let brakes = allowed(&contract.ego, most, -contract.ego.braking);
+    let departure = R::departure(contract, ego.speed, inherited, brakes);
+    let stop = R::rest(contract, departure.braking, 0.0) + contract.slack;
+    hazards.wait_at(path.line() - ego.s - contract.position_error, stop);
+}
