@@ -50,15 +50,15 @@ pub(crate) enum Command {
 
 impl Command {
     /// Runs the command.
-    pub(crate) fn run(self) -> Result<(), Failure> {
+    pub(crate) fn run(self, grammar: fn() -> clap::Command) -> Result<(), Failure> {
         match self {
-            Self::Completions(args) => completions::run(&args),
+            Self::Completions(args) => completions::run(&args, grammar()),
             Self::Data(data) => data.run(),
             Self::Demo => demo::run(),
             Self::Evaluate(args) => evaluate::run(&args),
             Self::Export(args) => export::run(&args),
             Self::Import(args) => import::run(&args),
-            Self::Man(args) => man::run(&args),
+            Self::Man(args) => man::run(&args, grammar()),
             Self::Play(args) => play::run(&args),
             Self::Replay(args) => replay::run(&args),
             Self::Train(args) => train::run(&args),

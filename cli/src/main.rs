@@ -34,7 +34,10 @@ fn main() -> ExitCode {
     interrupt::install();
     let done = arguments::parse().and_then(|arguments| {
         stdout::set_quiet(arguments.quiet);
-        arguments.command.unwrap_or_default().run()
+        arguments
+            .command
+            .unwrap_or_default()
+            .run(arguments::grammar)
     });
     match done {
         Ok(()) => ExitCode::SUCCESS,

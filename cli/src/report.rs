@@ -4,8 +4,10 @@
 //! without data.
 
 mod cases;
+mod digits;
 mod gallery;
 mod model;
+mod replayed;
 mod sweep;
 mod why;
 
@@ -19,7 +21,8 @@ use cede_sim::evaluate::{Drive, TableRow};
 use cede_sim::transparency;
 use cede_train::run::curve::Point;
 use gallery::Gallery;
-use model::{Case, Episodes, Interventions, Page};
+use model::{Episodes, Interventions, Page};
+use replayed::Case;
 use serde::Serialize;
 use std::collections::HashMap;
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! A first scene description, from the tracks alone: arms where tracks begin and end, and what vehicles do between them.
 
 use crate::Dataset;
-use crate::encounter::Manoeuvre;
+use crate::role::Manoeuvre;
 use crate::site::{by_turn, is_oncoming};
 use crate::tracks::{RawState, Track};
 use std::collections::{BTreeMap, BTreeSet};

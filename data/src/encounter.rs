@@ -1,38 +1,11 @@
 //! An encounter: two vehicles whose routes conflict, as recorded, and the traffic around them.
 
 use crate::rights::{Entry, Rights};
+use crate::role::{Manoeuvre, Role};
 use cede_controller::{ConflictKind, Footprint, Point, Route};
 
 /// A route in simulation; recorded tracks are simplified to fit (tolerance 1 cm).
 pub type SimRoute = Route<128>;
-
-/// Which of the two judged vehicles; `role as usize` is its index in [`Encounter::participants`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Role {
-    /// The left-turner (in generic encounters: the vehicle that has to give way).
-    Left = 0,
-    /// The vehicle that it meets.
-    Other = 1,
-}
-
-impl Role {
-    /// Both, in the order of [`Encounter::participants`].
-    pub const BOTH: [Self; 2] = [Self::Left, Self::Other];
-}
-
-/// What a vehicle does at the intersection.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Manoeuvre {
-    /// Turns left: heading changes by +50° to +130°.
-    Left,
-    /// Goes straight on: heading changes by less than 40°.
-    Straight,
-    /// Turns right: heading changes by −50° to −130°.
-    Right,
-    /// Anything else (a U-turn, a track that begins or ends in the middle).
-    Unknown,
-}
 
 /// Names an encounter within a data set.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -13,7 +13,8 @@ use super::motion::motion;
 use super::rights::{Entry, Party, Rights};
 use super::site::Site;
 use super::tracks::{Recording, STEP_MS, Track};
-use crate::encounter::{Encounter, EncounterId, Participant, Role, Sample, SimRoute};
+use crate::encounter::{Encounter, EncounterId, Participant, Sample, SimRoute};
+use crate::role::Role;
 use cede_controller::{CONFLICT_RADIUS, ConflictKind, Footprint};
 use std::cell::OnceCell;
 

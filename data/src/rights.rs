@@ -3,7 +3,7 @@
 use super::crossing::{Point, crosses};
 use super::lanelet::{Map, Regulation, RegulationKind, Sign, Trace};
 use super::tracks::{Track, wrap};
-use crate::encounter::{Manoeuvre, Role};
+use crate::role::{Manoeuvre, Role};
 use cede_controller::Control;
 
 /// What a vehicle finds where it enters a junction.

@@ -2,7 +2,7 @@
 
 use super::error::{DataError, Problem};
 use super::tracks::{RawState, Track, wrap};
-use crate::encounter::Manoeuvre;
+use crate::role::Manoeuvre;
 use cede_controller::ConflictKind;
 use serde::Deserialize;
 use std::f64::consts::PI;

@@ -1,8 +1,9 @@
 //! What is in a data set, in numbers: recorded and synthetic ones are compared by these.
 
 use super::{Dataset, STEP_MS};
-use crate::encounter::{Encounter, Manoeuvre, Participant, Role, Sample};
+use crate::encounter::{Encounter, Participant, Sample};
 use crate::rights::Rule;
+use crate::role::{Manoeuvre, Role};
 use cede_controller::ConflictKind;
 use cede_controller::kinematics::{MAX_ACCELERATION, STEP};
 use serde::Serialize;

@@ -1,7 +1,8 @@
 //! Recordings, maps and encounters as columns of numbers.
 
 use crate::error::{error, named};
-use crate::junction::{control_name, kind_name};
+use crate::junction::kind_name;
+use crate::names::control_name;
 use cede_data::lanelet::LineKind;
 use cede_data::{self as data, Encounter, Manoeuvre, Participant, Role, Split};
 use cede_sim::criticality::{AreaOf, Criticality};

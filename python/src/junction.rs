@@ -1,6 +1,7 @@
 //! Junctions from polylines.
 
 use crate::error::{error, named};
+use crate::names::{CONTROLS, PRIORITIES, class_named};
 use crate::observation::Vehicle;
 use cede_controller::{
     Class, ConflictKind, Control, Footprint, Junction as Prepared, JunctionError, PathId, Point,
@@ -15,36 +16,6 @@ const POINTS: usize = 1024;
 
 /// Stack (bytes) on which a junction is built: the largest is built by value.
 const STACK: usize = 64 << 20;
-
-const CLASSES: [(&str, Class); 4] = [
-    ("car", Class::Car),
-    ("lorry", Class::Lorry),
-    ("bicycle", Class::Bicycle),
-    ("pedestrian", Class::Pedestrian),
-];
-
-const CONTROLS: [(&str, Control); 5] = [
-    ("unknown", Control::Unknown),
-    ("free", Control::Free),
-    ("yield", Control::Yield),
-    ("stop", Control::Stop),
-    ("all-way-stop", Control::AllWayStop),
-];
-
-const PRIORITIES: [(&str, Priority); 3] = [
-    ("first-come", Priority::FirstCome),
-    ("unsigned", Priority::Unsigned),
-    ("signed", Priority::Signed),
-];
-
-pub(crate) fn control_name(control: Control) -> &'static str {
-    let found = CONTROLS.iter().find(|(_, known)| *known == control);
-    found.map_or("unknown", |(name, _)| name)
-}
-
-pub(crate) fn class_named(name: &str) -> PyResult<Class> {
-    named("kind", name, &CLASSES)
-}
 
 /// A junction of one of three capacities, so that a small one stays small.
 pub(crate) enum Capacity {

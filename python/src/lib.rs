@@ -9,6 +9,7 @@ mod error;
 mod evaluate;
 mod junction;
 mod look;
+mod names;
 mod observation;
 mod policy;
 mod replay;

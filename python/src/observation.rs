@@ -1,7 +1,7 @@
 //! Vehicles and tracks as they are sensed.
 
 use crate::error::error;
-use crate::junction::class_named;
+use crate::names::class_named;
 use cede_controller::geometry::{Point, Pose, unit};
 use cede_controller::{MAX_CANDIDATES, PathId, Track as Sensed, Vehicle as State};
 use pyo3::prelude::*;

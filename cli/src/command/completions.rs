@@ -1,6 +1,5 @@
 //! `cede completions`.
 
-use crate::arguments::grammar;
 use crate::failure::Failure;
 use clap_complete::Shell;
 
@@ -19,10 +18,10 @@ pub(crate) struct Args {
     shell: Shell,
 }
 
-/// Runs the command.
-pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+/// Runs the command, for the `grammar` of the command line.
+pub(crate) fn run(args: &Args, mut grammar: clap::Command) -> Result<(), Failure> {
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut grammar(), "cede", &mut script);
+    clap_complete::generate(args.shell, &mut grammar, "cede", &mut script);
     print!("{}", String::from_utf8_lossy(&script));
     Ok(())
 }

@@ -1,6 +1,5 @@
 //! `cede man`.
 
-use crate::arguments::grammar;
 use crate::failure::Failure;
 use cede_data::output;
 use clap::Command;
@@ -15,9 +14,8 @@ pub(crate) struct Args {
     out: PathBuf,
 }
 
-/// Runs the command.
-pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let mut grammar = grammar();
+/// Runs the command, for the `grammar` of the command line.
+pub(crate) fn run(args: &Args, mut grammar: Command) -> Result<(), Failure> {
     grammar.build();
     write(&grammar, "cede".to_owned(), &args.out)?;
     println!("{}", args.out.join("cede.1").display());

@@ -1,6 +1,6 @@
 //! The worst moments of the driver under test, found in all of its episodes.
 
-use super::model::Case;
+use super::replayed::Case;
 use super::why::{Class, words};
 use cede_controller::Footprint;
 use cede_controller::kinematics::{STEP, State};

@@ -3,7 +3,7 @@
 use super::layout::{CENTRE, Layout, Movement};
 use super::plan::{files_of, in_test, in_validation};
 use crate::Site;
-use crate::encounter::Manoeuvre;
+use crate::role::Manoeuvre;
 use std::fmt::Write;
 use std::path::Path;
 

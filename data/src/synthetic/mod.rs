@@ -119,7 +119,7 @@ impl Generated {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::encounter::Manoeuvre;
+    use crate::role::Manoeuvre;
     use cede_controller::ConflictKind;
     use std::collections::HashSet;
 

@@ -3,8 +3,8 @@
 use super::human::Right;
 use super::layout::{Arm, Layout, Movement};
 use super::plan::Control;
-use crate::encounter::Manoeuvre;
 use crate::lanelet::Sign;
+use crate::role::Manoeuvre;
 
 impl Layout {
     /// Whether everybody on this way has to stop at the line.

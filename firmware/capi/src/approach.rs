@@ -457,7 +457,7 @@ impl From<EnterError> for cede_detail {
                 value,
                 high: below,
                 excludes_high: 1,
-                contract_field: crate::contract::cede_contract_field::PositionError,
+                contract_field: crate::field::cede_contract_field::PositionError,
                 ..Self::new(cede_status::EnterPositionError)
             },
             _ => cede_status::Other.into(),

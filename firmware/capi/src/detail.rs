@@ -1,6 +1,6 @@
 //! What a refusal is about.
 
-use crate::contract::cede_contract_field;
+use crate::field::cede_contract_field;
 use crate::memory::offer;
 use crate::status::cede_status;
 

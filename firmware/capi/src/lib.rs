@@ -18,6 +18,7 @@ mod contract;
 mod decision;
 mod detail;
 mod drive;
+mod field;
 mod junction;
 mod memory;
 mod object;

@@ -1,7 +1,7 @@
 //! Numbers as text, for a log or a diagnostic tool. Texts are constants; they may change between versions, numbers do not.
 
-use crate::contract::CONTRACT_FIELD;
 use crate::decision::{ACTION, BREACH, CAUSE, CONDITION, FAULT, FIELD, REASON, SUBJECT};
+use crate::field::CONTRACT_FIELD;
 use crate::junction::{CLASS, CONFLICT, CONTROL, PRIORITY, RIGHT};
 use crate::status::STATUS;
 use core::ffi::{CStr, c_char};

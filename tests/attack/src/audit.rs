@@ -1,9 +1,10 @@
 //! Whether the controller's zones cover every overlap, by a search of the attacker's own.
 
+use crate::lane::Lane;
 use crate::plane::{Place, direction, minus, norm, separation};
 use crate::rng::Rng;
 use crate::scenario::{Family, SHARE};
-use crate::site::{Area, Lane, Site};
+use crate::site::{Area, Site};
 use crate::sway::Sway;
 use rayon::prelude::*;
 

@@ -2,9 +2,10 @@
 
 use crate::actuator::Actuator;
 use crate::judge::Seen;
+use crate::lane::Leg;
 use crate::motion::{State, TICK};
 use crate::plane::Place;
-use crate::site::{Leg, Site};
+use crate::site::Site;
 use crate::sway::Sway;
 
 /// One that is so near (m) to the end of its lane is gone.

@@ -1,21 +1,10 @@
 //! Lanes of which a part is out of sight, behind a corner or a lorry.
 
 use crate::body::Body;
+use crate::lane::Leg;
 use crate::rng::Rng;
 use crate::setup::Setup;
-use crate::site::Leg;
 use cede_controller::Sight;
-
-/// How much a shielded vehicle sees of the others' lanes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum View {
-    /// All.
-    Whole,
-    /// From corners on, and its shield is told where they are.
-    Corners,
-    /// From corners on, and its shield is not told: beyond the contract.
-    Untold,
-}
 
 /// A shield is told of so many lanes at most; others are in sight.
 const LANES: usize = 8;

@@ -1,8 +1,8 @@
 //! Who touches whom, looked for after every tick in which it is possible.
 
+use crate::lane::Lane;
 use crate::motion::{State, TICK};
 use crate::plane::{Place, separation};
-use crate::site::Lane;
 use crate::sway::Sway;
 
 /// Corners of a vehicle that turns are faster than its centre, by this factor at most.

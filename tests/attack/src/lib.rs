@@ -65,6 +65,7 @@ pub mod error;
 pub mod hidden;
 pub mod human;
 pub mod judge;
+pub mod lane;
 pub mod look;
 pub mod motion;
 pub mod mutants;

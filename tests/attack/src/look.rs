@@ -1,11 +1,12 @@
 //! One observation, as a vehicle's sensors make it of the world.
 
 use crate::body::Body;
+use crate::lane::Leg;
 use crate::plane::{Place, dot, minus, norm};
 use crate::rng::Rng;
 use crate::setup::Setup;
 use crate::sight::{Shown, Sight};
-use crate::site::{Area, Leg, Site};
+use crate::site::{Area, Site};
 use cede_controller::geometry::unit;
 use cede_controller::{MAX_CANDIDATES, PathId, Point, Pose, Track, Vehicle};
 

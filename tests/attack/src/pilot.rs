@@ -1,8 +1,9 @@
 //! A driver behind the shield that is attacked: the only place that calls it.
 
 use crate::body::Body;
-use crate::corner::{Corner, View};
+use crate::corner::Corner;
 use crate::hidden::{Course, fits};
+use crate::lane::Leg;
 use crate::look::Look;
 use crate::motion::TICK;
 use crate::numbers::Numbers;
@@ -12,7 +13,7 @@ use crate::rng::Rng;
 use crate::scenario::can_begin;
 use crate::setup::Setup;
 use crate::sight::Sight;
-use crate::site::Leg;
+use crate::sight::View;
 use cede_controller::dangerous::Rules;
 use cede_controller::{Decision, EnterError, Instant, Observation, Plan, Shield, SightError};
 use std::collections::VecDeque;

@@ -4,8 +4,8 @@
 //! vehicles of these sizes touch, however they turn at kinks. The contract's C6 speaks of one behind another in a lane: the
 //! other is behind if, going on along its way, it runs into the ego from the rear, and the gap is how far it gets until then.
 
+use crate::lane::Lane;
 use crate::plane::{Place, Size, dot, minus, norm, separation};
-use crate::site::Lane;
 use crate::sway::Sway;
 
 /// An ego counts as in the stretch from so far (m) before it on: stations are that coarse, and the controller's zones begin

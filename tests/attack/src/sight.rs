@@ -1,9 +1,19 @@
 //! What one vehicle senses of the others: errors, gaps, numbers and the order of tracks.
 
-use crate::corner::View;
 use crate::error::{ErrorSource, Shape};
 use crate::rng::Rng;
 use cede_controller::PathId;
+
+/// How much a shielded vehicle sees of the others' lanes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum View {
+    /// All.
+    Whole,
+    /// From corners on, and its shield is told where they are.
+    Corners,
+    /// From corners on, and its shield is not told: beyond the contract.
+    Untold,
+}
 
 /// How well vehicles see, within the contract.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -68,7 +68,12 @@ impl Order<'_> {
             seed: self.options.seed,
             settings,
         };
-        let provenance = provenance::of(self, &identity, encounters().count());
+        let provenance = provenance::of(
+            self.method,
+            (self.source, encounters().count()),
+            self.options,
+            &identity,
+        );
         let mut training = self.begin(identity, &lessons, self.panel(&sites, &lessons))?;
         self.advance(&mut training, &lessons)?;
         self.write(&training.run, &provenance)?;

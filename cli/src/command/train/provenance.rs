@@ -1,13 +1,17 @@
 //! How the policy of a training was made: the text next to the weights.
 
-use super::DATA_SEED;
-use super::order::Order;
+use super::{DATA_SEED, Method, Options};
+use crate::source::Source;
 use crate::training::Identity;
 use cede_train::run::provenance::Provenance;
 
-/// The provenance of the policy that `order` trains on this number of `encounters`.
-pub(super) fn of(order: &Order<'_>, identity: &Identity, encounters: usize) -> Provenance {
-    let (method, source, options) = (order.method, order.source, order.options);
+/// The provenance of the policy that is trained by `method` on this number of encounters from a `source`.
+pub(super) fn of(
+    method: &Method,
+    (source, encounters): (&Source, usize),
+    options: &Options,
+    identity: &Identity,
+) -> Provenance {
     let algorithm = method.algorithm.0.name();
     let mut command = format!("cede train {algorithm}");
     let data = if source.is_synthetic() {

@@ -9,3 +9,6 @@ mod riscv;
 pub(crate) use cortex_m::{Clock, exit, stack_pointer, write};
 #[cfg(target_arch = "riscv32")]
 pub(crate) use riscv::{Clock, exit, stack_pointer, write};
+
+/// What the start-up code paints the stack with, as `cortex-m-rt` does.
+pub(crate) const PAINT: u32 = 0xcccc_cccc;

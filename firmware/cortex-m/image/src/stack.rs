@@ -1,7 +1,6 @@
 //! How much RAM was touched since it was painted; the start-up code paints all of it first.
 
-/// What `cortex-m-rt` paints the stack with.
-pub(crate) const PAINT: u32 = 0xcccc_cccc;
+use crate::board::PAINT;
 
 unsafe extern "C" {
     static _stack_end: u32;

@@ -2,9 +2,9 @@
 
 use super::cast::{Cast, Manners, Start};
 use super::terms::Terms;
-use crate::corner::View;
 use crate::rng::Rng;
 use crate::sight::Sensing;
+use crate::sight::View;
 use crate::sketch::{self, Users, Way};
 
 /// Scenarios of one kind.

@@ -1,10 +1,10 @@
 //! A short campaign: every family, the broken rules, and the same results on any number of threads.
 
 use cede_attack::campaign::Round;
-use cede_attack::corner::View;
 use cede_attack::mutants;
 use cede_attack::scenario::{FAMILIES, Family, SHARE};
 use cede_attack::sight::Sensing;
+use cede_attack::sight::View;
 use cede_attack::tally::Tally;
 use cede_controller::dangerous::Sound;
 

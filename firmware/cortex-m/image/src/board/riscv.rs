@@ -17,7 +17,7 @@ global_asm!(
     "addi t0, t0, 4",
     "blt t0, t1, 1b",
     "j cede_start",
-    paint = const crate::stack::PAINT,
+    paint = const super::PAINT,
 );
 
 /// Where the serial port takes a character, and the test device a verdict.

@@ -1,0 +1,207 @@
+//! Encounters to be replayed on the page.
+
+use super::digits::{centi, milli};
+use super::why::words;
+use cede_controller::kinematics::State;
+use cede_data::{Encounter, EncounterId, Participant, Role};
+use cede_sim::episode::{End, Episode};
+use cede_sim::evaluate::Drive;
+use cede_sim::metrics::{recorded_states, svo_series};
+use serde::Serialize;
+
+/// An encounter to be replayed.
+#[derive(Serialize)]
+pub(super) struct Case {
+    name: String,
+    point: [f64; 2],
+    vehicles: [Vehicle; 2],
+    record: Motion,
+    drives: Vec<Driven>,
+    around: Vec<Bystander>,
+    /// Whether it is shown for a bad moment of one driver alone.
+    found: bool,
+}
+
+#[derive(Serialize)]
+struct Vehicle {
+    route: Vec<[f64; 2]>,
+    conflict_s: f64,
+}
+
+/// The motion of both vehicles along their routes, step by step.
+#[derive(Serialize)]
+struct Motion {
+    first: Option<&'static str>,
+    length: u32,
+    s: [Vec<f64>; 2],
+    v: [Vec<f64>; 2],
+    /// The left-turner's, in rad, until the first arrival.
+    svo: Vec<f64>,
+}
+
+#[derive(Serialize)]
+struct Driven {
+    driver: String,
+    end: &'static str,
+    #[serde(flatten)]
+    motion: Motion,
+    /// The steps in which the shield overruled each vehicle's driver, and why.
+    shielded: [Vec<(usize, Class, String)>; 2],
+}
+
+#[derive(Serialize)]
+struct Bystander {
+    appears: u32,
+    size: [f64; 2],
+    route: Vec<[f64; 2]>,
+    s: Vec<f64>,
+}
+
+impl Case {
+    pub(super) fn of(encounter: &Encounter) -> Self {
+        // The longest episode takes twice as long as the record.
+        let shown = 2 * encounter.steps;
+        let states: Vec<[State; 2]> = recorded_states(encounter)
+            .take(shown as usize + 1)
+            .collect();
+        let point = encounter.conflict_point;
+        let bystanders = encounter.participants.iter().skip(2);
+        Self {
+            name: case_name(encounter),
+            point: [point.x, point.y].map(|c| centi(f64::from(c))),
+            vehicles: Role::BOTH.map(|role| Vehicle {
+                route: route(encounter.judged(role)),
+                conflict_s: centi(f64::from(encounter.judged(role).conflict_s)),
+            }),
+            record: Motion::of(encounter, &states, Some(encounter.first), encounter.steps),
+            drives: Vec::new(),
+            around: bystanders.filter_map(|b| Bystander::of(b, shown)).collect(),
+            found: false,
+        }
+    }
+
+    /// Adds an episode, unless the driver has one already.
+    pub(super) fn add(&mut self, driver: String, drive: &Drive<'_>) {
+        if self.drives.iter().any(|driven| driven.driver == driver) {
+            return;
+        }
+        let episode = &drive.episode;
+        let overruled = |role: Role| {
+            let steps = episode.actions.iter().enumerate();
+            steps
+                .filter_map(|(i, both)| {
+                    let cause = both[role as usize].cause;
+                    Some((i, Class::of(cause)?, words(role, cause)))
+                })
+                .collect()
+        };
+        self.drives.push(Driven {
+            driver,
+            end: end(episode),
+            motion: Motion::of(
+                drive.encounter,
+                &episode.states,
+                episode.first(),
+                drive.measures.length,
+            ),
+            shielded: Role::BOTH.map(overruled),
+        });
+    }
+
+    /// The case as one that is shown for a bad moment alone.
+    pub(super) fn found(self) -> Self {
+        Self {
+            found: true,
+            ..self
+        }
+    }
+
+    /// Adds the episodes of the same encounter in `other` of drivers that have none here.
+    pub(super) fn merge(&mut self, other: Self) {
+        for driven in other.drives {
+            if self
+                .drives
+                .iter()
+                .all(|known| known.driver != driven.driver)
+            {
+                self.drives.push(driven);
+            }
+        }
+    }
+
+    pub(super) fn was_driven(&self) -> bool {
+        !self.drives.is_empty()
+    }
+}
+
+fn case_name(encounter: &Encounter) -> String {
+    let EncounterId {
+        file, left, other, ..
+    } = encounter.id;
+    let kind = match encounter.kind {
+        ConflictKind::Merging => "merging",
+        _ => "crossing",
+    };
+    let first = match encounter.first {
+        Role::Left => "left-turner",
+        Role::Other => "other",
+    };
+    format!("({file}, {left}, {other}): {kind}, {first} first")
+}
+
+fn end(episode: &Episode) -> &'static str {
+    match episode.end {
+        End::Finished => "finished",
+        End::Collision => "collision",
+        End::TimeOut => "time-out",
+    }
+}
+
+impl Motion {
+    fn of(encounter: &Encounter, states: &[[State; 2]], first: Option<Role>, length: u32) -> Self {
+        let series = |value: fn(State) -> f32| {
+            [0, 1].map(|i| {
+                states
+                    .iter()
+                    .map(|both| centi(f64::from(value(both[i]))))
+                    .collect()
+            })
+        };
+        let svo = svo_series(encounter, states.iter().copied());
+        Self {
+            first: first.map(|role| match role {
+                Role::Left => "left",
+                Role::Other => "other",
+            }),
+            length,
+            s: series(|state| state.s),
+            v: series(|state| state.v),
+            svo: svo.map(|phi| centi(f64::from(phi))).collect(),
+        }
+    }
+}
+
+impl Bystander {
+    fn of(vehicle: &Participant, shown: u32) -> Option<Self> {
+        let steps = shown.checked_sub(vehicle.appears)?;
+        let size = vehicle.footprint;
+        Some(Self {
+            appears: vehicle.appears,
+            size: [size.length, size.width].map(|m| centi(f64::from(m))),
+            route: route(vehicle),
+            s: vehicle
+                .record
+                .iter()
+                .take(steps as usize + 1)
+                .map(|sample| centi(f64::from(sample.s)))
+                .collect(),
+        })
+    }
+}
+
+fn route(vehicle: &Participant) -> Vec<[f64; 2]> {
+    let points = vehicle.route.points().iter();
+    points
+        .map(|p| [p.x, p.y].map(|c| centi(f64::from(c))))
+        .collect()
+}
