@@ -1,7 +1,7 @@
 //! An encounter: two vehicles whose routes conflict, as recorded, and the traffic around them.
 
 use crate::rights::{Entry, Rights};
-use crate::role::{Manoeuvre, Role};
+pub use crate::role::{Manoeuvre, Role};
 use cede_controller::{ConflictKind, Footprint, Point, Route};
 
 /// A route in simulation; recorded tracks are simplified to fit (tolerance 1 cm).

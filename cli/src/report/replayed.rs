@@ -1,7 +1,8 @@
 //! Encounters to be replayed on the page.
 
-use super::digits::{centi, milli};
-use super::why::words;
+use super::digits::centi;
+use super::why::{Class, words};
+use cede_controller::ConflictKind;
 use cede_controller::kinematics::State;
 use cede_data::{Encounter, EncounterId, Participant, Role};
 use cede_sim::episode::{End, Episode};

@@ -1,11 +1,14 @@
 //! Properties of the shield on its own: total, dimensionless, symmetric, monotone; and what it says.
 
+use super::choice::most;
+use super::hazard::Passage;
 use super::*;
-use crate::decision::{Breach, Cause, Intervention, Reason};
+use crate::decision::{Breach, Cause};
 use crate::geometry::{Footprint, Point, Pose, unit};
+use crate::headroom::Headroom;
 use crate::junction::zone::Span;
-use crate::junction::{Class, Route, Zone};
-use crate::observation::Track;
+use crate::junction::{Class, RightOfWay, Route, Zone};
+use crate::observation::{Track, Vehicle};
 use proptest::prelude::*;
 use std::string::ToString;
 

@@ -7,7 +7,7 @@ use crate::rng::Rng;
 use crate::shared::Shared;
 use crate::sketch::{Kind, Way};
 use cede_controller::{
-    Class, Footprint, Junction, JunctionError, PathId, Point, Priority, Route, RouteError, Zone,
+    Class, Footprint, Junction, JunctionError, Point, Priority, Route, RouteError, Zone,
 };
 use std::sync::OnceLock;
 
