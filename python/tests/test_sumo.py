@@ -1,4 +1,5 @@
 import json
+import math
 import os
 import shutil
 import subprocess
@@ -13,6 +14,8 @@ pytest.importorskip("libsumo", reason="no SUMO (pip install 'cede[sumo]')")
 
 from cede.sumo import Bridge, Network, Settings
 from cede.sumo.__main__ import main
+from cede.sumo._network import REACH
+from cede.sumo._persons import Person, Walk, nearest, zones_of
 
 ARMS = {"N": (0, 200), "S": (0, -200), "E": (200, 0), "W": (-200, 0)}
 
@@ -40,10 +43,36 @@ def netconvert(folder, kind, lanes=1, more=()):
     return net
 
 
-def run(net, **settings):
+def run(net, pedestrians=0.0, **settings):
     demand = settings.pop("demand", 150.0)
-    bridge = Bridge(Network(net), Settings(**{"time": 120.0, **settings}), demand=demand)
-    return bridge.run().summary()
+    settings = Settings(**{"time": 120.0, **settings})
+    return Bridge(Network(net), settings, demand=demand, pedestrians=pedestrians).run().summary()
+
+
+CROSSINGS = ("--sidewalks.guess", "--crossings.guess")
+
+
+def roundabout(folder):
+    """Four arms at a ring of four junctions."""
+    program = shutil.which("netconvert", path=os.path.dirname(sys.executable)) or "netconvert"
+    around = ((0, 20), (-20, 0), (0, -20), (20, 0))
+    nodes, edges = [], []
+    for i, (x, y) in enumerate(around):
+        nodes.append(f'<node id="R{i}" x="{x}" y="{y}" type="priority"/>')
+        nodes.append(f'<node id="A{i}" x="{8 * x}" y="{8 * y}"/>')
+        ends = ((f"R{i}", f"R{(i + 1) % 4}", 3), (f"A{i}", f"R{i}", 1), (f"R{i}", f"A{i}", 1))
+        for one, two, priority in ends:
+            edges.append(
+                f'<edge id="{one}{two}" from="{one}" to="{two}" numLanes="1" speed="8.33" '
+                f'priority="{priority}"/>'
+            )
+    (folder / "r.nod.xml").write_text(f"<nodes>{''.join(nodes)}</nodes>")
+    (folder / "r.edg.xml").write_text(f"<edges>{''.join(edges)}</edges>")
+    net = folder / "roundabout.net.xml"
+    files = ["-n", folder / "r.nod.xml", "-e", folder / "r.edg.xml", "-o", net]
+    options = ["--no-turnarounds"]
+    subprocess.run([program, *map(str, files), *options], check=True, capture_output=True)
+    return net
 
 
 def test_a_junction_becomes_paths(tmp_path):
@@ -51,13 +80,23 @@ def test_a_junction_becomes_paths(tmp_path):
     assert (site.name, site.kind, len(site.movements)) == ("C", "right_before_left", 12)
     left = next(m for m in site.movements if (m.incoming, m.outgoing) == ("SC_0", "CW_0"))
     straight = next(m for m in site.movements if (m.incoming, m.outgoing) == ("NC_0", "CS_0"))
-    conflict = site.junction.conflict(left.path, straight.path)
+    conflict = site.junction.conflict(left.driven, straight.path)
     assert conflict.kind == "crossing"
     # Who comes from the right goes first; oncoming straight traffic goes before a left turn.
-    assert conflict.right_of_way == "other"
+    assert (conflict.right_of_way, conflict.priority) == ("other", "unsigned")
+    # Among those who are driven whoever arrives first does.
+    assert site.junction.conflict(left.driven, straight.driven).priority == "first-come"
+    # Nobody has the right of way over whoever is ahead in one lane.
+    ahead = next(m for m in site.movements if (m.incoming, m.outgoing) == ("SC_0", "CN_0"))
+    assert site.junction.conflict(left.driven, ahead.path).right_of_way == "unsettled"
     assert site.junction.length(left.path) == pytest.approx(left.length, abs=0.02)
+
     # A turn is slower than the limit, a straight way is not.
-    assert min(left.limit) < 8.0 and min(straight.limit) == pytest.approx(13.89)
+    def slowest(movement):
+        places = [movement.length * i / 200 for i in range(200)]
+        return min(site.junction.allowed_speed(movement.path, s) for s in places)
+
+    assert slowest(left) < 8.0 and slowest(straight) == pytest.approx(13.89)
 
 
 KINDS = (
@@ -114,10 +153,10 @@ def test_who_is_behind_another_is_told_if_it_may_take_another_way(tmp_path):
     told = set()
 
     class Watched(Bridge):
-        def _drive(self, car, now, tracks):
+        def _drive(self, car, tracks):
             if car.name == "ego" and self.cars["a"].lane == "WC_0":
                 told.update(track.number for track in tracks)
-            super()._drive(car, now, tracks)
+            super()._drive(car, tracks)
 
     net = Network(netconvert(tmp_path, "priority"))
     bridge = Watched(net, Settings(driver="profile", time=14.0, intent="known"), routes=routes)
@@ -145,7 +184,7 @@ def test_the_right_of_way_is_that_of_the_signs(tmp_path):
     (site,) = Network(netconvert(tmp_path, "priority")).sites
     by_ends = {(m.incoming, m.outgoing): m for m in site.movements}
     major, minor = by_ends["WC_0", "CE_0"], by_ends["SC_0", "CN_0"]
-    conflict = site.junction.conflict(major.path, minor.path)
+    conflict = site.junction.conflict(major.driven, minor.path)
     assert (conflict.right_of_way, conflict.priority) == ("ego", "signed")
     assert (minor.direction, by_ends["SC_0", "CW_0"].direction) == ("straight", "left")
 
@@ -164,7 +203,61 @@ def test_the_same_seed_gives_the_same_run(tmp_path):
     assert one == two
 
 
-def test_lanes_and_a_roundabout(tmp_path):
+@pytest.mark.parametrize("driver", ["profile", "cede"])
+def test_persons_on_crossings_are_let_pass(tmp_path, driver):
+    net = netconvert(tmp_path, "priority", more=CROSSINGS)
+    summary = run(net, driver=driver, pedestrians=50.0, demand=80.0, time=150.0)
+    assert summary["persons"] > 5
+    assert (summary["collisions"], summary["person_collisions"], summary["breaches"]) == (0, 0, 0)
+    assert summary["stuck"] == 0
+    assert summary["person_max_wait_s"] < 30.0
+    assert summary["arrived"] > 2
+
+
+def test_a_crossing_is_a_path_for_persons(tmp_path):
+    (site,) = Network(netconvert(tmp_path, "priority", more=CROSSINGS)).sites
+    assert len(site.crossings) == 4
+    straight = next(m for m in site.movements if (m.incoming, m.outgoing) == ("WC_1", "CE_1"))
+    crossed = [c for c in site.crossings if zones_of(site, straight, c)]
+    # That of the arm it comes from and that of the arm it leaves by.
+    assert len(crossed) == 2
+    for crossing in crossed:
+        assert crossing.width == pytest.approx(4.0)
+        (x, y), (dx, dy) = crossing.start, crossing.along
+        assert crossing.place(x, y) == pytest.approx(REACH)
+        assert crossing.place(x + 3 * dx, y + 3 * dy) == pytest.approx(REACH + 3)
+        # Beside it, before the kerb: as far as it is from its end.
+        beside = crossing.width / 2 + 3
+        at = (x - 4 * dx + beside * dy, y - 4 * dy - beside * dx)
+        assert crossing.place(*at) == pytest.approx(REACH - 5)
+
+
+def test_a_person_touches_a_vehicle():
+    person = Person("p", x=10.0, y=0.0)
+    assert person.touches((12.0, 0.0), 0.0, (5.0, 1.8))
+    assert person.touches((9.8, 0.0), 0.0, (5.0, 1.8))
+    assert not person.touches((9.6, 0.0), 0.0, (5.0, 1.8))
+    assert not person.touches((12.0, 1.3), 0.0, (5.0, 1.8))
+    assert person.touches((10.0, 2.0), math.pi / 2, (5.0, 1.8))
+    assert not person.touches((8.0, 0.0), math.pi, (1.0, 1.8))
+
+
+def test_nobody_in_the_lee_of_another_person_is_told(tmp_path):
+    walks = [Walk(Person(name), 0, 0, s) for name, s in (("a", 1.0), ("b", 4.0), ("c", 9.0))]
+    assert [walk.person.name for walk in nearest(walks, (5.0, 7.0))] == ["b", "c"]
+    assert [walk.person.name for walk in nearest(walks, (0.5, 7.0))] == ["a"]
+
+
+def test_a_roundabout(tmp_path):
+    net = roundabout(tmp_path)
+    assert len(Network(net).sites) == 4
+    for driver in ("profile", "cede"):
+        summary = run(net, driver=driver, time=200.0)
+        assert (summary["collisions"], summary["stuck"]) == (0, 0)
+        assert summary["arrived"] > 10
+
+
+def test_lanes_and_a_grid(tmp_path):
     assert run(netconvert(tmp_path, "priority", lanes=2), driver="profile")["collisions"] == 0
     program = shutil.which("netgenerate", path=os.path.dirname(sys.executable)) or "netgenerate"
     net = tmp_path / "grid.net.xml"
@@ -231,3 +324,25 @@ def test_a_vehicle_that_leaves_the_network_is_let_go(tmp_path):
     net = Network(netconvert(tmp_path, "allway_stop"))
     summary = Bridge(net, Settings(driver="profile", time=60.0), routes=routes).run().summary()
     assert (summary["arrived"], summary["demanded"]) == (1, 1)
+
+
+def test_pedestrians_need_pavements_and_a_demand(tmp_path):
+    net = netconvert(tmp_path, "priority")
+    with pytest.raises(cede.Error, match="pedestrians an hour and arm give none"):
+        run(net, pedestrians=100.0)
+    routes = tmp_path / "r.rou.xml"
+    routes.write_text("<routes/>")
+    with pytest.raises(cede.Error, match="pedestrians come with a demand"):
+        Bridge(Network(net), Settings(), routes=routes, pedestrians=5.0).run()
+
+
+def test_a_closed_connection_is_one_clear_exception(tmp_path):
+    class Closed(Bridge):
+        def _drive_all(self):
+            super()._drive_all()
+            if self._now > 1.0:
+                self.sumo.close()
+
+    net = Network(netconvert(tmp_path, "allway_stop"))
+    with pytest.raises(cede.Error, match=r"SUMO is gone after 1\.\d s"):
+        Closed(net, Settings(driver="profile"), demand=100.0).run()

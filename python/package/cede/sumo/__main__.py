@@ -43,7 +43,13 @@ def _run(args: argparse.Namespace) -> dict[str, float | int | None]:
         policy=Policy.load(args.weights) if args.weights else None,
     )
     settings.check()
-    bridge = Bridge(Network(args.net), settings, routes=args.routes, demand=args.demand)
+    bridge = Bridge(
+        Network(args.net),
+        settings,
+        routes=args.routes,
+        demand=args.demand,
+        pedestrians=args.pedestrians,
+    )
     return bridge.run().summary()
 
 
@@ -67,6 +73,13 @@ def _parser() -> argparse.ArgumentParser:
     traffic.add_argument("--routes", metavar="R.rou.xml", help="the vehicles and their routes")
     traffic.add_argument(
         "--demand", type=float, metavar="N", help="random vehicles an hour from every arm"
+    )
+    option(
+        "--pedestrians",
+        type=float,
+        default=0.0,
+        metavar="N",
+        help="with --demand: random persons on foot an hour from every arm",
     )
     option("--share", type=float, default=1.0, help="share of the vehicles that are driven")
     option("--ego", type=int, metavar="N", help="drive at most N vehicles")

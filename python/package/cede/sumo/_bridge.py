@@ -12,10 +12,11 @@ import time
 from dataclasses import dataclass, field
 from typing import Any
 
-from .._cede import Contract, Drive, Error, Junction, Policy, Shield, Track
+from .._cede import Contract, Drive, Error, Policy, Shield, Track
 from ._demand import write_demand
 from ._measures import CRITICAL, STANDING, STUCK, Measures
 from ._network import MOST_CANDIDATES, STOPS, Movement, Network, Site, Stretch
+from ._persons import Person, Walk, nearest, walks_at, zones_of
 
 DRIVERS = ("cede", "profile", "sumo")
 INTENTS = ("indicated", "hidden", "known")
@@ -30,6 +31,8 @@ HEADWAY = 1.0
 """Seconds that a vehicle wishes to keep to its leader."""
 STANDSTILL = 2.5
 """Metres to the leader at rest, SUMO's `minGap`, which SUMO's gaps leave out."""
+LIVELY = 3.0
+"""Acceleration (m/s²) with nothing ahead."""
 SETTING_OFF = 4.0
 """Speed (m/s), at least, at which a vehicle is expected to cross a junction."""
 ROOM = 2.0
@@ -113,13 +116,15 @@ class Car:
 class Bridge:
     """Runs a simulation of `network` and drives a share of its vehicles.
 
-    `routes` is a file of routes; without it, `demand` vehicles an hour come from every arm.
+    `routes` is a file of routes; without it, `demand` vehicles and `pedestrians` persons an hour
+    come from every arm.
     """
 
     network: Network
     settings: Settings
     routes: str | os.PathLike[str] | None = None
     demand: float | None = None
+    pedestrians: float = 0.0
     measures: Measures = field(default_factory=Measures)
 
     def run(self) -> Measures:
@@ -127,6 +132,8 @@ class Bridge:
         self.settings.check()
         if (self.routes is None) == (self.demand is None):
             raise Error("give either routes or a demand")
+        if self.routes is not None and self.pedestrians:
+            raise Error("pedestrians come with a demand: in a file of routes, write them there")
         with tempfile.TemporaryDirectory() as folder:
             routes = self.routes
             if routes is None:
@@ -136,23 +143,30 @@ class Bridge:
                     self.network.net,
                     routes,
                     per_hour=self.demand,
+                    pedestrians=self.pedestrians,
                     time=settings.time,
                     seed=settings.seed,
                 )
             elif not os.path.isfile(routes):
                 raise Error(f"{os.fspath(routes)}: no such file of routes")
             self._start(os.fspath(routes))
+            closed = self.sumo.FatalTraCIError, self.sumo.TraCIException
             try:
                 self._loop()
+            except closed as wrong:
+                raise Error(f"SUMO is gone after {self._now:.1f} s: {wrong}") from wrong
             finally:
-                self.sumo.close()
+                with contextlib.suppress(*closed):
+                    self.sumo.close()
         return self.measures
 
     def _start(self, routes: str) -> None:
         if self.settings.gui:
+            import sumolib
             import traci as sumo
 
-            program = "sumo-gui"
+            # That of the package, wherever it is installed.
+            program = sumolib.checkBinary("sumo-gui")
         else:
             # It may warn of other packages, on the stream where the numbers go.
             with contextlib.redirect_stdout(sys.stderr):
@@ -181,15 +195,18 @@ class Bridge:
 
     def _loop(self) -> None:
         self.cars: dict[str, Car] = {}
+        self.persons: dict[str, Person] = {}
         self._random = random.Random(self.settings.seed)
         self._numbers = 0
+        self._now = 0.0
         steps = round(self.settings.time / self.settings.step)
-        for _ in range(steps):
+        for step in range(1, steps + 1):
             self.sumo.simulationStep()
+            self._now = step * self.settings.step
             self._account()
             began = time.process_time()
             decisions = self.measures.decisions
-            self._drive_all(self.sumo.simulation.getTime())
+            self._drive_all()
             if self.measures.decisions > decisions:
                 self.measures.seconds += time.process_time() - began
         self._finish()
@@ -206,11 +223,54 @@ class Bridge:
             measures.delays.append(car.delay)
         for collision in simulation.getCollisions():
             pair = frozenset((collision.collider, collision.victim))
+            if not pair <= self.cars.keys():
+                # With a person: these are counted below, wherever they are.
+                continue
             measures.collisions.add(pair)
-            if any(name in self.cars and self.cars[name].chosen for name in pair):
+            if any(self.cars[name].chosen for name in pair):
                 measures.ego_collisions.add(pair)
         for car in self.cars.values():
             self._read(car)
+        self._account_persons()
+
+    def _account_persons(self) -> None:
+        on_foot, measures = self.sumo.person, self.measures
+        if not self.persons and on_foot.getIDCount() == 0:
+            return
+        # Whoever rides is not on foot.
+        there = {name for name in on_foot.getIDList() if not on_foot.getVehicle(name)}
+        for name in self.persons.keys() - there:
+            del self.persons[name]
+        for name in sorted(there):
+            person = self.persons.get(name)
+            if person is None:
+                person = self.persons[name] = Person(name)
+                measures.persons += 1
+            person.moved()
+            person.x, person.y = on_foot.getPosition(name)
+            person.speed = on_foot.getSpeed(name)
+            standing = person.speed < STANDING
+            person.waits = person.waits + self.settings.step if standing else 0.0
+            measures.stood += self.settings.step * standing
+            measures.person_wait = max(measures.person_wait, person.waits)
+        for car in self.cars.values():
+            self._collide(car)
+
+    def _collide(self, car: Car) -> None:
+        """Count the persons that a vehicle touches."""
+        x, y = self.sumo.vehicle.getPosition(car.name)
+        near = [p for p in self.persons.values() if abs(p.x - x) < 10.0 > abs(p.y - y)]
+        if not near:
+            return
+        vehicle, measures = self.sumo.vehicle, self.measures
+        heading = math.radians(90.0 - vehicle.getAngle(car.name))
+        size = car.length, vehicle.getWidth(car.name)
+        for person in near:
+            if person.touches((x, y), heading, size):
+                pair = frozenset((car.name, person.name))
+                measures.person_collisions.add(pair)
+                if car.chosen:
+                    measures.ego_person_collisions.add(pair)
 
     def _new(self, name: str) -> Car:
         vehicle, settings = self.sumo.vehicle, self.settings
@@ -220,13 +280,12 @@ class Bridge:
                 f"vehicle {name} is {length} m × {width} m: the junctions are prepared for "
                 f"{self.network.length} m × {self.network.width} m"
             )
-        self._numbers += 1
         chosen = self._random.random() < settings.share
         if settings.ego is not None:
             chosen = chosen and self.measures.driven < settings.ego
         self.measures.driven += chosen
         speed = vehicle.getSpeed(name)
-        return Car(name, self._numbers % 65536, length, chosen, speed=speed)
+        return Car(name, self._number(), length, chosen, speed=speed)
 
     def _read(self, car: Car) -> None:
         vehicle, step = self.sumo.vehicle, self.settings.step
@@ -244,7 +303,8 @@ class Bridge:
     def _measure(self, car: Car, before: float, was: float) -> None:
         lateral = 0.0
         if car.on_path:
-            lateral = car.speed**2 * car.movement.at(car.movement.curvature, car.front)
+            curvature = car.movement.at(car.movement.curvature, car.front)
+            lateral = (car.speed * car.rate) ** 2 * curvature
         metres = (before + car.speed) / 2 * self.settings.step
         self.measures.moved(metres, self.settings.step, (was, car.acceleration), lateral)
 
@@ -255,7 +315,7 @@ class Bridge:
 
     # Who is where.
 
-    def _drive_all(self, now: float) -> None:
+    def _drive_all(self) -> None:
         for car in self.cars.values():
             self._follow(car)
         if self.settings.driver == "sumo":
@@ -267,8 +327,34 @@ class Bridge:
                 if site.name in there:
                     there[site.name].append(car)
         self._tracks: dict[tuple[str, str], Track | None] = {}
+        persons = list(self.persons.values())
+        sites = {car.site.name: car.site for car in driven if persons}
+        stride = 0.95 * self.network.pace * self.settings.step
+        walks = {
+            name: walks_at(site, persons, stride, self._number) for name, site in sites.items()
+        }
         for car in driven:
-            self._drive(car, now, self._relevant(car, there[car.site.name]))
+            tracks = self._relevant(car, there[car.site.name])
+            tracks += self._on_foot(car, walks.get(car.site.name, {}))
+            self._drive(car, tracks)
+
+    def _on_foot(self, car: Car, walks: dict[int, list[Walk]]) -> list[Track]:
+        """Who keeps the vehicle out of its zones with crossings."""
+        found: dict[int, Walk] = {}
+        for crossing in car.site.crossings:
+            there = walks.get(crossing.path)
+            for past, *zone in zones_of(car.site, car.movement, crossing) if there else ():
+                if car.s < past:
+                    found.update({walk.number: walk for walk in nearest(there, zone)})
+        vehicle = car.site.junction.vehicle
+        return [
+            Track(w.number, w.path, vehicle(w.path, w.s, w.person.speed), kind="pedestrian")
+            for w in found.values()
+        ]
+
+    def _number(self) -> int:
+        self._numbers += 1
+        return self._numbers % 65536
 
     def _relevant(self, car: Car, there: list[Car]) -> list[Track]:
         """The others at the junction without those that others hold back.
@@ -291,7 +377,8 @@ class Bridge:
             relevant.append(min(ahead, key=lambda other: other.position))
         tracks = [self._track(car.site, other) for other in relevant]
         known = [track for track in tracks if track is not None]
-        queues = [self._foremost(car.site, queue) for queue in lanes.values()]
+        held = {o.movement.incoming for o in relevant if _stands_in_entry(o, car.site)}
+        queues = [self._foremost(car.site, q) for lane, q in lanes.items() if lane not in held]
         return known + [track for queue in queues for track in queue]
 
     def _foremost(self, site: Site, queue: list[Car]) -> list[Track]:
@@ -303,10 +390,11 @@ class Bridge:
         taken: set[int] = set()
         for other in sorted(queue, key=lambda other: -other.position):
             track = self._track(site, other)
-            paths = set() if track is None else {path for path, _ in track.candidates}
-            if not paths <= taken:
+            # A movement is the same way for all.
+            ways = {path % len(site.movements) for path, _ in track.candidates} if track else set()
+            if not ways <= taken:
                 foremost.append(track)
-                taken |= paths
+                taken |= ways
             if other.speed < STANDING:
                 break
         return foremost
@@ -328,11 +416,11 @@ class Bridge:
             front = _front(car, stretch)
             s, rate = movement.place(front)
             if front >= 0.0 and s < movement.length:
-                candidates.append((movement.path, s))
+                candidates.append((movement.driven if car.shield else movement.path, s))
         if not candidates:
             return None
         (path, s), *others = candidates
-        vehicle = self._junction(site).vehicle(path, s, car.speed * rate)
+        vehicle = site.junction.vehicle(path, s, car.speed * rate)
         return Track(car.number, path, vehicle, or_on=others)
 
     def _may_take(self, car: Car, movement: Movement) -> bool:
@@ -389,9 +477,9 @@ class Bridge:
 
     # What it does.
 
-    def _drive(self, car: Car, now: float, tracks: list[Track]) -> None:
-        ego = self._junction(car.site).vehicle(car.movement.path, car.s, car.speed * car.rate)
-        if car.shield is None and not self._take_over(car, now, ego, tracks):
+    def _drive(self, car: Car, tracks: list[Track]) -> None:
+        ego = car.site.junction.vehicle(car.movement.driven, car.s, car.speed * car.rate)
+        if car.shield is None and not self._take_over(car, ego, tracks):
             return
         self._forget(car, {track.number for track in tracks})
         wanted = self._profile(car)
@@ -399,9 +487,9 @@ class Bridge:
         measures.decisions += 1
         if self.settings.shield:
             if car.approach is not None:
-                decision = car.approach.decide(now, ego, tracks, wanted)
+                decision = car.approach.decide(self._now, ego, tracks, wanted)
             else:
-                decision = car.shield.filter(now, ego, tracks, wanted)
+                decision = car.shield.filter(self._now, ego, tracks, wanted)
             wanted = decision.acceleration
             measures.shielded += decision.cause != "policy"
             measures.no_plan += decision.no_plan
@@ -423,38 +511,30 @@ class Bridge:
             (car.approach or car.shield).forget(number)
         car.known = numbers
 
-    def _take_over(self, car: Car, now: float, ego: Any, tracks: list[Track]) -> bool:
+    def _take_over(self, car: Car, ego: Any, tracks: list[Track]) -> bool:
         """Take control over, if there is a safe plan."""
-        contract = self.settings.contract or self._contract(car.site)
-        shield = Shield(self._junction(car.site), car.movement.path, contract)
+        contract = self.settings.contract or contract_named("sumo")
+        shield = Shield(car.site.junction, car.movement.driven, contract)
         if self.settings.shield:
             try:
-                shield.ready(now, ego, tracks)
+                shield.ready(self._now, ego, tracks)
             except Error:
                 self.measures.refused += 1
                 return False
         car.shield = shield
         if self.settings.driver == "cede":
             drive = Drive(self.settings.policy, contract)
-            car.approach = drive.enter(self._junction(car.site), car.movement.path)
+            car.approach = drive.enter(car.site.junction, car.movement.driven)
         self.sumo.vehicle.setSpeedMode(car.name, _NOTHING)
         return True
 
-    def _contract(self, site: Site) -> Contract:
-        return _contract_of(site, self._all_driven)
-
-    def _junction(self, site: Site) -> Junction:
-        return site.fleet if self._all_driven else site.junction
-
-    @property
-    def _all_driven(self) -> bool:
-        return self.settings.share == 1.0 and self.settings.ego is None
-
     def _profile(self, car: Car) -> float:
         """The acceleration (m/s²) of a plain profile: limits, curves, stop signs, the leader."""
-        movement, braking, step = car.movement, self.network.braking, self.settings.step
-        allowed = movement.at(movement.limit, car.front + car.speed * step)
-        wanted = max(-3.0, min(3.0 * (1.0 - (car.speed / 14.0) ** 4), (allowed - car.speed) / 0.5))
+        movement, braking = car.movement, self.network.braking
+        allowed = car.site.junction.allowed_acceleration(
+            movement.driven, car.s, car.speed * car.rate, self.settings.step
+        )
+        wanted = min(LIVELY, allowed)
         if not car.stopped:
             short = movement.line - car.s
             car.stopped = car.speed < STANDING and short < AT_LINE
@@ -473,8 +553,17 @@ class Bridge:
         closing = car.speed - leader.speed
         if closing > 0.0 and gap + STANDSTILL < CRITICAL * closing:
             self.measures.critical += 1
-        wished = car.speed * (HEADWAY + closing / (2 * math.sqrt(3.0 * self.network.braking)))
-        return 3.0 * (1.0 - ((STANDSTILL + max(0.0, wished)) / (STANDSTILL + max(gap, -1.0))) ** 2)
+        wished = car.speed * (HEADWAY + closing / (2 * math.sqrt(LIVELY * self.network.braking)))
+        return LIVELY * (
+            1.0 - ((STANDSTILL + max(0.0, wished)) / (STANDSTILL + max(gap, -1.0))) ** 2
+        )
+
+
+def _stands_in_entry(car: Car, site: Site) -> bool:
+    """Whether a vehicle stands in the junction with its rear still in its lane."""
+    if car.site is not site or not car.on_path or car.speed >= STANDING:
+        return False
+    return car.front - car.length < car.movement.stretches[1].start <= car.front
 
 
 def _front(car: Car, stretch: Stretch) -> float:
@@ -516,9 +605,3 @@ def contract_named(name: str) -> Contract:
         )
     known = Contract(name)
     return Contract(name, **{field: max(getattr(known, field), errors[field]) for field in errors})
-
-
-def _contract_of(site: Site, all_driven: bool) -> Contract:
-    """The right of way holds, but where SUMO's own drivers do not know of any."""
-    kept = all_driven or site.kind != "unregulated"
-    return contract_named("sumo" if kept else "worst-case")

@@ -26,6 +26,11 @@ class Measures:
     stuck: int = 0
     collisions: set[frozenset[str]] = field(default_factory=set)
     ego_collisions: set[frozenset[str]] = field(default_factory=set)
+    persons: int = 0
+    person_collisions: set[frozenset[str]] = field(default_factory=set)
+    ego_person_collisions: set[frozenset[str]] = field(default_factory=set)
+    person_wait: float = 0.0
+    stood: float = 0.0
     metres: float = 0.0
     hard_brakes: int = 0
     jerk_squares: float = 0.0
@@ -69,6 +74,11 @@ class Measures:
             "stuck": self.stuck,
             "collisions": len(self.collisions),
             "ego_collisions": len(self.ego_collisions),
+            "persons": self.persons,
+            "person_collisions": len(self.person_collisions),
+            "ego_person_collisions": len(self.ego_person_collisions),
+            "person_mean_wait_s": share(self.stood, self.persons),
+            "person_max_wait_s": self.person_wait,
             "hard_brakes_per_km": share(self.hard_brakes, self.metres / 1000),
             "jerk_rms": None if jerk is None else math.sqrt(jerk),
             "lateral_acceleration_max": self.lateral_max,

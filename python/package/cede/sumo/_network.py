@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections import Counter
 from dataclasses import dataclass, field
@@ -10,6 +11,9 @@ from typing import Any
 import numpy as np
 
 from .._cede import Error, Junction
+
+RADIUS = 0.35
+"""Metres around the middle of a person within which it is, whichever way it turns."""
 
 TYPES = (
     "allway_stop",
@@ -21,6 +25,9 @@ TYPES = (
     "zipper",
 )
 """Junctions that are driven; at traffic lights and elsewhere SUMO drives."""
+
+HEEDLESS = ("unregulated", "zipper")
+"""Junctions at which SUMO's drivers give way to nobody."""
 
 STOPS = "sw"
 """States of a connection at which a vehicle stops before it goes: a stop sign, an all-way stop."""
@@ -34,11 +41,20 @@ DIRECTIONS = {"l": "left", "L": "left", "t": "left", "r": "right", "R": "right"}
 MOST_CANDIDATES = 4
 """Ways that a lane may lead: a track has so many candidate paths."""
 
+BEFORE_LINE, BEFORE_CROSSING = 0.3, 0.8
+"""Metres before a junction, or one with crossings, at which a vehicle waits."""
+
 BEFORE, BEYOND = 300.0, 100.0
 """Metres of the lanes before and beyond a junction that belong to its paths."""
 
-LATERAL = 3.0
+LATERAL = 2.5
 """Lateral acceleration (m/s²) that a curve's speed is chosen for."""
+
+SLACK = 0.5
+"""Metres along a crossing by which a person may be ahead of its track."""
+
+REACH = 12.0
+"""Metres around a crossing within which a person counts as on its way to it."""
 
 TOLERANCE = 0.1
 """Metres by which a vehicle may be beside its path."""
@@ -70,6 +86,9 @@ class Movement:
     """
 
     path: int
+    """Of SUMO's own drivers."""
+    driven: int
+    """The same path for vehicles that are driven: among these another right of way holds."""
     incoming: str
     outgoing: str
     to_edge: str
@@ -86,8 +105,6 @@ class Movement:
     """Arc length (m) of the centre."""
     rate: list[float] = field(repr=False)
     """Its change with the place of the front bumper."""
-    limit: list[float] = field(repr=False)
-    """Speed (m/s), low enough for the limits and curves ahead."""
     curvature: list[float] = field(repr=False)
     """Curvature (1/m) of the path."""
 
@@ -100,8 +117,42 @@ class Movement:
         return place, self.rate[i] + share * (self.rate[i + 1] - self.rate[i])
 
     def at(self, table: list[float], front: float) -> float:
-        """The entry of `limit` or `curvature` for a front bumper there."""
+        """The entry of a table for a front bumper there."""
         return table[min(max(int(front / _GRID), 0), len(table) - 1)]
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """A pedestrian crossing.
+
+    Its path leads straight over the road. Nobody on foot keeps to a line, so the path goes on for
+    `REACH` metres beyond either kerb, and whoever is so near to the crossing is on it there, as far
+    from the kerb as it is from the crossing.
+    """
+
+    path: int
+    start: tuple[float, float]
+    """Where it begins at one kerb."""
+    along: tuple[float, float]
+    """Its direction."""
+    length: float
+    """Metres from kerb to kerb."""
+    width: float
+
+    @property
+    def reach(self) -> float:
+        """Length (m) of its path."""
+        return self.length + 2 * REACH
+
+    def place(self, x: float, y: float) -> float:
+        """Arc length (m) of a person on its path; beyond its ends for who is far away."""
+        dx, dy = x - self.start[0], y - self.start[1]
+        along = dx * self.along[0] + dy * self.along[1]
+        beside = max(0.0, abs(dy * self.along[0] - dx * self.along[1]) - self.width / 2)
+        if beside == 0.0 and 0.0 <= along <= self.length:
+            return REACH + along
+        before, beyond = math.hypot(along, beside), math.hypot(along - self.length, beside)
+        return REACH - before if before < beyond else REACH + self.length + beyond
 
 
 @dataclass
@@ -111,12 +162,10 @@ class Site:
     name: str
     kind: str
     junction: Junction
-    """With the rights that SUMO's drivers know."""
-    fleet: Junction
-    """Where all are driven: the order of arrival counts where no sign says who goes first."""
     movements: list[Movement]
     on_lane: dict[str, list[tuple[Movement, Stretch]]]
     """The movements that use a lane."""
+    crossings: list[Crossing] = field(default_factory=list)
 
 
 class Network:
@@ -127,6 +176,7 @@ class Network:
         length: Length (m) of the longest vehicle.
         width: Width (m) of the widest vehicle.
         braking: Comfortable braking (m/s²) before limits and curves.
+        pace: Highest speed (m/s) of persons on crossings.
     """
 
     def __init__(
@@ -136,10 +186,15 @@ class Network:
         length: float = 5.0,
         width: float = 1.8,
         braking: float = 2.0,
+        pace: float = 1.5,
     ) -> None:
         self.file = os.fspath(file)
-        self.length, self.width, self.braking = length, width, braking
+        self.length, self.width, self.braking, self.pace = length, width, braking, pace
         self.net = _read(self.file)
+        self._crossed: dict[str, list[Any]] = {}
+        for edge in self.net.getEdges(withInternal=True):
+            if edge.getFunction() == "crossing":
+                self._crossed.setdefault(edge.getToNode().getID(), []).append(edge)
         nodes = [node for node in self.net.getNodes() if node.getType() in TYPES]
         sites = [self._site(node) for node in nodes]
         self.sites = [site for site in sites if site is not None]
@@ -155,7 +210,12 @@ class Network:
 
     def _site(self, node: Any) -> Site | None:
         """The junction at a node; `None` where nobody meets anybody."""
-        connections = [c for c in node.getConnections() if not _is_internal(c.getFrom().getID())]
+        # Those between a pavement and the corner of a junction are for persons.
+        connections = [
+            c
+            for c in node.getConnections()
+            if not any(_is_internal(edge.getID()) for edge in (c.getFrom(), c.getTo()))
+        ]
         if len({c.getFromLane().getID() for c in connections}) < 2:
             return None
         ways = Counter(c.getFromLane().getID() for c in connections)
@@ -165,35 +225,50 @@ class Network:
                     f"{self.file}: junction {node.getID()}: lane {lane} leads {count} ways: "
                     f"at most {MOST_CANDIDATES} are followed; build the network without turnarounds"
                 )
-        builder, movements = Junction.builder(TOLERANCE), []
-        for connection in connections:
-            way = _Way.along(self._lanes(node, connection), self.length)
-            kinds = {"kind": "car", "length": self.length, "width": self.width, "line": way.line}
-            kinds["control"] = CONTROLS.get(connection.getState(), "free")
+        builder = Junction.builder(TOLERANCE, LATERAL)
+        crossed = self._crossed.get(node.getID(), ())
+        short = BEFORE_CROSSING if crossed else BEFORE_LINE
+        ways = [_Way.along(self._lanes(node, c), self.length, short) for c in connections]
+        size = {"kind": "car", "length": self.length, "width": self.width}
+        paths = []
+        for connection, way in zip(connections, ways):
+            control = CONTROLS.get(connection.getState(), "free")
+            rules = {"line": way.line, "control": control, "limits": way.limits}
             try:
-                path = builder.path(_simplified(way.centre), **kinds)
+                paths.append(builder.path(_simplified(way.centre), **size, **rules))
             except Error as wrong:
                 raise self._wrong(node, connection, wrong) from None
-            movements.append(self._movement(path, connection, way))
-        junction = self._build(builder, node, connections, "unsigned")
-        fleet = self._build(builder, node, connections, "first-come")
-        site = Site(node.getID(), node.getType(), junction, fleet, movements, {})
+        driven = [builder.variant(p, **size, line=way.line) for p, way in zip(paths, ways)]
+        crossings = [self._crossing(builder, edge) for edge in crossed]
+        _tell_rights(builder, node, connections, (paths, driven))
+        try:
+            junction = builder.build()
+        except Error as wrong:
+            raise Error(f"{self.file}: junction {node.getID()}: {wrong}") from None
+        movements = [_movement(*each) for each in zip(paths, driven, connections, ways)]
+        site = Site(node.getID(), node.getType(), junction, movements, {}, crossings)
         for movement in movements:
             for stretch in movement.stretches:
                 site.on_lane.setdefault(stretch.lane, []).append((movement, stretch))
         return site
 
-    def _build(self, builder: Any, node: Any, connections: list[Any], unsigned: str) -> Junction:
-        """The junction with the right of way of every two connections."""
-        for second, later in enumerate(connections):
-            for first, earlier in enumerate(connections[:second]):
-                right = _right(node, earlier, later, unsigned)
-                pair = (first, second) if right.first is earlier else (second, first)
-                builder.right_of_way(*pair, right.priority)
-        try:
-            return builder.build()
-        except Error as wrong:
-            raise Error(f"{self.file}: junction {node.getID()}: {wrong}") from None
+    def _crossing(self, builder: Any, edge: Any) -> Crossing:
+        (lane,) = edge.getLanes()
+        shape = np.array(lane.getShape(), float)[:, :2]
+        start, chord = shape[0], shape[-1] - shape[0]
+        length = float(np.hypot(*chord))
+        along = chord / length
+        # Where it bends, the straight path is as much wider.
+        bend = float(np.abs((shape - start) @ np.array([-along[1], along[0]])).max())
+        width = lane.getWidth() + 2 * bend
+        path = builder.path(
+            [start - REACH * along, shape[-1] + REACH * along],
+            kind="pedestrian",
+            length=2 * (RADIUS + SLACK),
+            width=width,
+            pace=self.pace,
+        )
+        return Crossing(path, tuple(start), tuple(along), length, width)
 
     def _lanes(self, node: Any, connection: Any) -> list[Any]:
         """The lanes of a connection: before, inside, beyond the junction."""
@@ -211,29 +286,29 @@ class Network:
             )
         return [*lanes, connection.getToLane()]
 
-    def _movement(self, path: int, connection: Any, way: _Way) -> Movement:
-        curvature = way.curvature()
-        allowed = np.minimum(way.speeds, np.sqrt(LATERAL / np.maximum(curvature, 1e-4)))
-        return Movement(
-            path=path,
-            incoming=connection.getFromLane().getID(),
-            outgoing=connection.getToLane().getID(),
-            to_edge=connection.getTo().getID(),
-            state=connection.getState(),
-            direction=DIRECTIONS.get(connection.getDirection(), "straight"),
-            stretches=tuple(way.stretches),
-            length=float(way.arc[-1]),
-            line=way.line,
-            clear=float(np.interp(way.stretches[-1].start + self.length, way.fronts, way.arc)),
-            arc=way.arc.tolist(),
-            rate=np.maximum(np.gradient(way.arc, _GRID), 0.1).tolist(),
-            limit=_ahead(allowed, self.braking).tolist(),
-            curvature=curvature.tolist(),
-        )
-
     def _wrong(self, node: Any, connection: Any, what: object) -> Error:
         ends = f"{connection.getFromLane().getID()} → {connection.getToLane().getID()}"
         return Error(f"{self.file}: junction {node.getID()}, connection {ends}: {what}")
+
+
+def _movement(path: int, driven: int, connection: Any, way: _Way) -> Movement:
+    curvature = way.curvature()
+    return Movement(
+        path=path,
+        driven=driven,
+        incoming=connection.getFromLane().getID(),
+        outgoing=connection.getToLane().getID(),
+        to_edge=connection.getTo().getID(),
+        state=connection.getState(),
+        direction=DIRECTIONS.get(connection.getDirection(), "straight"),
+        stretches=tuple(way.stretches),
+        length=float(way.arc[-1]),
+        line=way.line,
+        clear=float(np.interp(way.stretches[-1].start + way.length, way.fronts, way.arc)),
+        arc=way.arc.tolist(),
+        rate=np.maximum(np.gradient(way.arc, _GRID), 0.1).tolist(),
+        curvature=curvature.tolist(),
+    )
 
 
 def _read(file: str) -> Any:
@@ -257,22 +332,45 @@ class _Right:
     priority: str
 
 
-def _right(node: Any, one: Any, two: Any, unsigned: str) -> _Right:
-    """The right of way of two connections as SUMO has it, and an order where it has none.
+def _tell_rights(
+    builder: Any, node: Any, connections: list[Any], paths: tuple[list[int], list[int]]
+) -> None:
+    """Tell the right of way of every two connections, whose paths are SUMO's and the driven ones.
 
-    `unsigned` is the priority where no sign says who goes first.
+    Driven vehicles go in the order of their arrival where no sign says who goes first. SUMO's
+    drivers know no such order, and at some junctions they give way to nobody.
     """
+    sumo, driven = paths
+    for second, later in enumerate(connections):
+        for first, earlier in enumerate(connections[:second]):
+            if earlier.getFromLane() is later.getFromLane():
+                # Whoever is ahead goes first.
+                continue
+            right = _right(node, earlier, later)
+            one, two = (first, second) if right.first is earlier else (second, first)
+            among = "signed" if right.priority == "signed" else "first-come"
+            builder.right_of_way(driven[one], driven[two], among)
+            if node.getType() in HEEDLESS:
+                builder.right_of_way(sumo[one], driven[two], "signed")
+                builder.right_of_way(sumo[two], driven[one], "signed")
+            else:
+                builder.right_of_way(sumo[one], driven[two], right.priority)
+                builder.right_of_way(driven[one], sumo[two], right.priority)
+
+
+def _right(node: Any, one: Any, two: Any) -> _Right:
+    """The right of way of two connections as SUMO has it, and an order where it has none."""
     if node.getType() == "allway_stop":
         return _Right(one, "first-come")
     forbids, forbidden = _forbids(node, one, two), _forbids(node, two, one)
     if forbids != forbidden:
         signs = node.getType() in ("priority", "priority_stop", "zipper")
-        return _Right(one if forbids else two, "signed" if signs else unsigned)
+        return _Right(one if forbids else two, "signed" if signs else "unsigned")
     # Vehicles of these two touch only where they cut corners, or both have to look out.
     one_major, two_major = (connection.getState() == "M" for connection in (one, two))
     if one_major != two_major:
         return _Right(one if one_major else two, "signed")
-    return _Right(one, unsigned)
+    return _Right(one, "unsigned")
 
 
 def _forbids(node: Any, first: Any, second: Any) -> bool:
@@ -292,19 +390,22 @@ def _is_internal(name: str) -> bool:
 class _Way:
     """The way along some lanes: tables over the place of the front bumper."""
 
+    length: float
+    """Metres of the vehicle."""
+    short: float
+    """Metres before the junction at which its front bumper waits."""
     stretches: list[Stretch]
     fronts: np.ndarray
     centre: np.ndarray
     """Where the centre is, shape (n, 2)."""
     arc: np.ndarray
     """Its arc length (m)."""
-    heading: np.ndarray
-    speeds: np.ndarray
-    """The speed limit (m/s)."""
+    limits: list[tuple[float, float]]
+    """From which arc length (m) on there are which speed limits (m/s)."""
 
     @classmethod
-    def along(cls, lanes: list[Any], length: float) -> _Way:
-        """The way of a vehicle of this length."""
+    def along(cls, lanes: list[Any], length: float, short: float) -> _Way:
+        """The way of a vehicle of this length, which waits so short (m) of the junction."""
         shapes = [np.array(lane.getShape(), float)[:, :2] for lane in lanes]
         whole = [_arc(shape)[-1] for shape in shapes]
         cut = max(0.0, whole[0] - BEFORE)
@@ -315,31 +416,34 @@ class _Way:
         fronts = np.arange(0.0, along[-1] + _GRID, _GRID)
         front, rear = _points_at(points, along, fronts), _points_at(points, along, fronts - length)
         centre = (front + rear) / 2
-        ahead = front - rear
+        arc = _arc(centre)
         return cls(
+            length=length,
+            short=short,
             stretches=[
                 Stretch(lane.getID(), start, size / max(lane.getLength(), 0.1))
                 for lane, start, size in zip(lanes, starts, whole)
             ],
             fronts=fronts,
             centre=centre,
-            arc=_arc(centre),
-            heading=np.unwrap(np.arctan2(ahead[:, 1], ahead[:, 0])),
-            speeds=np.array([lane.getSpeed() for lane in lanes])[
-                np.searchsorted(starts, fronts, side="right") - 1
+            arc=arc,
+            limits=[
+                (float(np.interp(start, fronts, arc)), lane.getSpeed())
+                for start, lane in zip(starts, lanes)
             ],
         )
 
     @property
     def line(self) -> float:
         """Where the centre is while the front bumper is a little before the junction."""
-        return float(np.interp(self.stretches[1].start - 0.3, self.fronts, self.arc))
+        return float(np.interp(self.stretches[1].start - self.short, self.fronts, self.arc))
 
     def curvature(self) -> np.ndarray:
-        """The change of heading a metre, over a window of a few metres."""
-        side = int(_WINDOW / 2 / _GRID)
-        padded = np.pad(self.heading, side, mode="edge")
-        return np.abs(padded[2 * side :] - padded[: -2 * side]) / _WINDOW
+        """By how much (rad) the path of the centre turns a metre, over a window of a few metres."""
+        moved = np.diff(self.centre, axis=0, append=2 * self.centre[-1:] - self.centre[-2:-1])
+        heading = np.unwrap(np.arctan2(moved[:, 1], moved[:, 0]))
+        ends = (np.interp(self.arc + side * _WINDOW, self.arc, heading) for side in (-0.5, 0.5))
+        return np.abs(np.subtract(*ends)) / _WINDOW
 
 
 def _arc(points: np.ndarray) -> np.ndarray:
@@ -375,11 +479,3 @@ def _simplified(points: np.ndarray, away: float = 0.01) -> np.ndarray:
         return np.stack([first, last])
     halves = (_simplified(points[: farthest + 1], away), _simplified(points[farthest:], away))
     return np.concatenate([halves[0][:-1], halves[1]])
-
-
-def _ahead(allowed: np.ndarray, braking: float) -> np.ndarray:
-    """The speeds from which comfortable braking keeps to all that are `allowed` ahead."""
-    limit = allowed.copy()
-    for i in range(len(limit) - 2, -1, -1):
-        limit[i] = min(limit[i], np.sqrt(limit[i + 1] ** 2 + 2 * braking * _GRID))
-    return limit
