@@ -292,7 +292,7 @@ fn no_replay_of_the_demo_shows_a_car_that_drives_through_another() {
     let begin = "<script id=\"data\" type=\"application/json\">";
     let json = part(&html, begin, "</script>").trim_start_matches(begin);
     let page: Value = serde_json::from_str(json).unwrap();
-    let (mut shielded, mut met) = (0, 0);
+    let (mut shielded, mut met) = (0, false);
     for case in page["cases"].as_array().unwrap() {
         for drive in case["drives"].as_array().unwrap() {
             let driver = drive["driver"].as_str().unwrap();
@@ -307,12 +307,12 @@ fn no_replay_of_the_demo_shows_a_car_that_drives_through_another() {
                 case["name"]
             );
             shielded += usize::from(behind);
-            met += usize::from(touch(case, drive, &[], false));
+            met = met || touch(case, drive, &[], false);
         }
     }
     assert!(shielded > 0);
     assert!(
-        met > 0,
+        met,
         "nobody was in the way of anybody: the check shows nothing"
     );
 }

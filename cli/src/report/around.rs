@@ -1,7 +1,6 @@
 //! The traffic around the two judged vehicles: as recorded, and left out of a replay where it would be in the way.
 
-use super::digits::centi;
-use super::replayed::route;
+use super::digits::{centi, route};
 use cede_controller::kinematics::State;
 use cede_controller::separation::OrientedBox;
 use cede_controller::{Footprint, Pose};

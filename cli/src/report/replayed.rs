@@ -1,11 +1,11 @@
 //! Encounters to be replayed on the page.
 
 use super::around::{Bystander, around, in_the_way};
-use super::digits::centi;
+use super::digits::{centi, route};
 use super::why::{Class, words};
 use cede_controller::ConflictKind;
 use cede_controller::kinematics::State;
-use cede_data::{Encounter, EncounterId, Participant, Role};
+use cede_data::{Encounter, EncounterId, Role};
 use cede_sim::episode::{End, Episode};
 use cede_sim::evaluate::Drive;
 use cede_sim::metrics::{recorded_states, svo_series};
@@ -179,11 +179,4 @@ impl Motion {
             svo: svo.map(|phi| centi(f64::from(phi))).collect(),
         }
     }
-}
-
-pub(super) fn route(vehicle: &Participant) -> Vec<[f64; 2]> {
-    let points = vehicle.route.points().iter();
-    points
-        .map(|p| [p.x, p.y].map(|c| centi(f64::from(c))))
-        .collect()
 }
