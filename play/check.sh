@@ -2,7 +2,7 @@
 # The playground: the module that is committed in docs/play, and one that is built here, decide as the host does, bit for
 # bit, on golden observations and on what visitors of the page did; nobody is hit while the contract holds; the page
 # works in Chromium. Shows as well that one changed bit is found. What cannot be had is skipped, and says so.
-# AXE may name axe-core's axe.min.js (npm install axe-core), for a check of accessibility.
+# AXE may name axe-core's axe.min.js; else that of .build/axe is taken (npm install --prefix .build/axe axe-core@4).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=$PWD/.build/play
@@ -106,5 +106,7 @@ fi
 
 if [ -n "$node" ] && [ -n "$chromium" ]; then
     echo "== the page in Chromium"
-    node play/check/browser.js "$chromium" "$build" ${AXE:+"$AXE"}
+    axe=${AXE:-.build/axe/node_modules/axe-core/axe.min.js}
+    [ -f "$axe" ] || { skip "axe-core" && axe=; }
+    node play/check/browser.js "$chromium" "$build" ${axe:+"$axe"}
 fi

@@ -3,6 +3,7 @@
 //! The page draws its content from the JSON in it ([`model`]) and hides sections
 //! without data.
 
+mod around;
 mod cases;
 mod digits;
 mod gallery;

@@ -2,7 +2,10 @@
 
 mod chromium;
 
+use cede_controller::{Footprint, Point, Pose, UnitVector, Vector};
+use cede_sim::judge::Judge;
 use chromium::{browser, open};
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 fn url(page: &Path) -> String {
@@ -211,4 +214,105 @@ fn the_page_needs_no_network() {
     ] {
         assert!(!html.contains(reference), "{reference}");
     }
+}
+
+fn numbers(values: &Value) -> Vec<f32> {
+    let values = values.as_array().unwrap().iter();
+    values.map(|value| value.as_f64().unwrap() as f32).collect()
+}
+
+/// Where a drawn vehicle is, at `step` and between steps: as the page's `pose` and `sample` have it.
+fn drawn(route: &Value, s: &Value, step: f32) -> Option<Pose> {
+    let s = numbers(s);
+    let (below, above) = (step.floor() as usize, step.ceil() as usize);
+    let mut left = s.get(below)? + step.fract() * (s.get(above)? - s[below]);
+    let points: Vec<[f32; 2]> = route
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|p| numbers(p).try_into().unwrap())
+        .collect();
+    for (i, pair) in points.windows(2).enumerate() {
+        let ([ax, ay], [bx, by]) = (pair[0], pair[1]);
+        let length = (bx - ax).hypot(by - ay);
+        if left <= length || i + 2 == points.len() {
+            let f = left / length;
+            let position = Point::new(ax + f * (bx - ax), ay + f * (by - ay));
+            let direction = UnitVector::new_normalize(Vector::new(bx - ax, by - ay));
+            return Some(Pose {
+                position,
+                direction,
+            });
+        }
+        left -= length;
+    }
+    None
+}
+
+/// Whether two vehicles that the replay of `drive` draws touch, by rapier2d; the two judged ones among each other where
+/// `judged` says so. `left_out` are the places of those that are not drawn.
+fn touch(case: &Value, drive: &Value, left_out: &[usize], judged: bool) -> bool {
+    let around = case["around"].as_array().unwrap();
+    let size = |vehicle: &Value| numbers(&vehicle["size"]);
+    let sizes = around.iter().map(|vehicle| Footprint {
+        length: size(vehicle)[0],
+        width: size(vehicle)[1],
+    });
+    let mut judge = Judge::new(
+        &[Footprint::PAPER; 2]
+            .into_iter()
+            .chain(sizes)
+            .collect::<Vec<_>>(),
+    );
+    let steps = drive["s"][0].as_array().unwrap().len();
+    (0..2 * steps - 1)
+        .map(|half| 0.5 * half as f32)
+        .any(|step| {
+            let own = (0..2).map(|i| drawn(&case["vehicles"][i]["route"], &drive["s"][i], step));
+            let others = around.iter().enumerate().map(|(i, vehicle)| {
+                let since = step - vehicle["appears"].as_f64().unwrap() as f32;
+                let shown = since >= 0.0 && !left_out.contains(&i);
+                shown
+                    .then(|| drawn(&vehicle["route"], &vehicle["s"], since))
+                    .flatten()
+            });
+            let poses: Vec<Option<Pose>> = own.chain(others).collect();
+            judge
+                .touching(&poses)
+                .any(|(a, b)| a < 2 && (judged || b >= 2))
+        })
+}
+
+#[test]
+fn no_replay_of_the_demo_shows_a_car_that_drives_through_another() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut demo = assert_cmd::Command::cargo_bin("cede").unwrap();
+    demo.current_dir(folder.path()).assert().success();
+    let html = std::fs::read_to_string(folder.path().join("out/report.html")).unwrap();
+    let begin = "<script id=\"data\" type=\"application/json\">";
+    let json = part(&html, begin, "</script>").trim_start_matches(begin);
+    let page: Value = serde_json::from_str(json).unwrap();
+    let (mut shielded, mut met) = (0, false);
+    for case in page["cases"].as_array().unwrap() {
+        for drive in case["drives"].as_array().unwrap() {
+            let driver = drive["driver"].as_str().unwrap();
+            let behind = driver.contains("+ shield");
+            let left_out: Vec<usize> = numbers(&drive["left_out"])
+                .iter()
+                .map(|&i| i as usize)
+                .collect();
+            assert!(
+                !touch(case, drive, &left_out, behind),
+                "{}: {driver}",
+                case["name"]
+            );
+            shielded += usize::from(behind);
+            met = met || touch(case, drive, &[], false);
+        }
+    }
+    assert!(shielded > 0);
+    assert!(
+        met,
+        "nobody was in the way of anybody: the check shows nothing"
+    );
 }

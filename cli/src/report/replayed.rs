@@ -1,10 +1,11 @@
 //! Encounters to be replayed on the page.
 
-use super::digits::centi;
+use super::around::{Bystander, around, in_the_way};
+use super::digits::{centi, route};
 use super::why::{Class, words};
 use cede_controller::ConflictKind;
 use cede_controller::kinematics::State;
-use cede_data::{Encounter, EncounterId, Participant, Role};
+use cede_data::{Encounter, EncounterId, Role};
 use cede_sim::episode::{End, Episode};
 use cede_sim::evaluate::Drive;
 use cede_sim::metrics::{recorded_states, svo_series};
@@ -46,27 +47,19 @@ struct Driven {
     end: &'static str,
     #[serde(flatten)]
     motion: Motion,
+    /// Those in [`Case::around`] that are in the way, and not shown.
+    left_out: Vec<usize>,
     /// The steps in which the shield overruled each vehicle's driver, and why.
     shielded: [Vec<(usize, Class, String)>; 2],
 }
 
-#[derive(Serialize)]
-struct Bystander {
-    appears: u32,
-    size: [f64; 2],
-    route: Vec<[f64; 2]>,
-    s: Vec<f64>,
-}
-
 impl Case {
     pub(super) fn of(encounter: &Encounter) -> Self {
-        // The longest episode takes twice as long as the record.
-        let shown = 2 * encounter.steps;
+        let shown = shown(encounter);
         let states: Vec<[State; 2]> = recorded_states(encounter)
             .take(shown as usize + 1)
             .collect();
         let point = encounter.conflict_point;
-        let bystanders = encounter.participants.iter().skip(2);
         Self {
             name: case_name(encounter),
             point: [point.x, point.y].map(|c| centi(f64::from(c))),
@@ -76,7 +69,7 @@ impl Case {
             }),
             record: Motion::of(encounter, &states, Some(encounter.first), encounter.steps),
             drives: Vec::new(),
-            around: bystanders.filter_map(|b| Bystander::of(b, shown)).collect(),
+            around: around(encounter, shown),
             found: false,
         }
     }
@@ -105,6 +98,7 @@ impl Case {
                 episode.first(),
                 drive.measures.length,
             ),
+            left_out: in_the_way(drive.encounter, shown(drive.encounter), &episode.states),
             shielded: Role::BOTH.map(overruled),
         });
     }
@@ -133,6 +127,11 @@ impl Case {
     pub(super) fn was_driven(&self) -> bool {
         !self.drives.is_empty()
     }
+}
+
+/// Steps that a replay shows at most: the longest episode takes twice as long as the record.
+fn shown(encounter: &Encounter) -> u32 {
+    2 * encounter.steps
 }
 
 fn case_name(encounter: &Encounter) -> String {
@@ -180,29 +179,4 @@ impl Motion {
             svo: svo.map(|phi| centi(f64::from(phi))).collect(),
         }
     }
-}
-
-impl Bystander {
-    fn of(vehicle: &Participant, shown: u32) -> Option<Self> {
-        let steps = shown.checked_sub(vehicle.appears)?;
-        let size = vehicle.footprint;
-        Some(Self {
-            appears: vehicle.appears,
-            size: [size.length, size.width].map(|m| centi(f64::from(m))),
-            route: route(vehicle),
-            s: vehicle
-                .record
-                .iter()
-                .take(steps as usize + 1)
-                .map(|sample| centi(f64::from(sample.s)))
-                .collect(),
-        })
-    }
-}
-
-fn route(vehicle: &Participant) -> Vec<[f64; 2]> {
-    let points = vehicle.route.points().iter();
-    points
-        .map(|p| [p.x, p.y].map(|c| centi(f64::from(c))))
-        .collect()
 }

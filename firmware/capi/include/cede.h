@@ -1994,7 +1994,7 @@ const char *cede_class_text(uint8_t vehicle_class);
 uint32_t cede_abi_version(void);
 
 /**
- * The library's version in words, as in "0.1.0".
+ * The library's version in words, as in "0.2.0".
  */
 const char *cede_version(void);
 

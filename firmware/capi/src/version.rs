@@ -26,7 +26,7 @@ const VERSION: &CStr =
         Err(_) => c"",
     };
 
-/// The library's version in words, as in "0.1.0".
+/// The library's version in words, as in "0.2.0".
 #[unsafe(no_mangle)]
 pub extern "C" fn cede_version() -> *const c_char {
     VERSION.as_ptr()

@@ -61,13 +61,16 @@ impl Policy {
 
     fn row<'p>(&self, subject: &Subject<'_>, property: &'p StateProperty) -> PropertyRow<'p> {
         let limit = Duration::from_secs(self.timeout);
-        let settled = subject.settle(property, Instant::now() + limit, self.check);
+        let deadline = Instant::now() + limit;
+        let settled = subject.settle(property, deadline, self.check);
+        let late = settled.finding == policy::Finding::Unsettled && Instant::now() >= deadline;
         let largest = self
             .sweep
             .then(|| subject.largest_scale(property, Instant::now() + limit));
         PropertyRow {
             property,
             settled,
+            out_of_time: late.then_some(self.timeout),
             largest,
         }
     }
@@ -135,6 +138,8 @@ fn properties(path: &Path, text: &str) -> Result<Vec<StateProperty>, Failure> {
 struct PropertyRow<'p> {
     property: &'p StateProperty,
     settled: Settled,
+    /// The seconds that were not enough.
+    out_of_time: Option<u64>,
     largest: Option<f64>,
 }
 
@@ -192,6 +197,9 @@ impl PropertyRow<'_> {
                 "\n       ego {d} m at {v} m/s, other {other_d} m at {other_v} m/s, {:?}, right of way {:?}: {acceleration} m/s²",
                 setting.kind, setting.right_of_way
             );
+        }
+        if let Some(seconds) = self.out_of_time {
+            line += &format!("\n       {seconds} s ran out: give it more with --timeout SECONDS");
         }
         if let Some(scale) = self.largest {
             line += &format!(

@@ -179,7 +179,7 @@ function player(report) {
     slider.max = horizon.toFixed(1);
     slider.value = Math.min(slider.value, horizon);
     view = new View(find("scene"), ...surroundings(item));
-    find("outcome").textContent = `Recorded: ${outcome(item.record)}. ${drive.driver}: ${outcome(drive)}.`;
+    find("outcome").textContent = `Recorded: ${outcome(item.record)}. ${drive.driver}: ${outcome(drive)}.${leftOut(drive.left_out.length)}`;
     drawCharts();
     draw();
   }
@@ -189,24 +189,15 @@ function player(report) {
     return drives.findLast((d) => d.driver.startsWith("cede")) ?? drives.findLast((d) => d.driver !== "replay") ?? drives[0];
   }
 
-  // Whether the traffic around comes as near as to touch: by circles along both vehicles.
-  function meets(c, driven) {
-    const along = ({ x, y, heading }, length) => [-0.4, 0, 0.4].map((f) => [x + f * length * Math.cos(heading), y + f * length * Math.sin(heading)]);
-    return c.around.some(({ appears, route, s, size }) => s.some((at, i) => {
-      const k = appears + i;
-      return c.vehicles.some((v, j) => {
-        if (k >= driven.s[j].length) return false;
-        const own = along(pose(v.route, driven.s[j][k]), PAPER_SIZE[0]);
-        return along(pose(route, at), size[0]).some(([x, y]) => own.some(([a, b]) => Math.hypot(x - a, y - b) < PAPER_SIZE[1]));
-      });
-    }));
-  }
-
   function outcome({ first, length, end }) {
     if (end === "collision") return `collision after ${(length * STEP).toFixed(1)} s`;
     if (!first) return "nobody arrives in time";
     return `${first === "left" ? "left-turner" : "other"} first, after ${(length * STEP).toFixed(1)} s`;
   }
+
+  // An episode has the two vehicles alone.
+  const leftOut = (count) => count === 0 ? ""
+    : ` Left out: ${count === 1 ? "a recorded vehicle" : `${count} recorded vehicles`} around, which would be in the way.`;
 
   const styled = (d) => ({
     colour: palette.get(d.driver),
@@ -272,8 +263,9 @@ function player(report) {
     if (!report.map.lanes.length) roads();
     const roles = [css("--left"), css("--other")];
     item.vehicles.forEach((v, i) => view.line(v.route, roles[i], 1.2, [4, 5]));
-    for (const { appears, size, route, s } of item.around) {
-      const since = t - appears * STEP;
+    for (const { appears, size, route, s } of item.around.filter((_, i) => !drive.left_out.includes(i))) {
+      // Once the episode is over, everybody stays where he was.
+      const since = Math.min(t, STEP * (drive.s[0].length - 1)) - appears * STEP;
       if (since < 0 || since > (s.length - 1) * STEP) continue;
       view.vehicle(pose(route, sample(s, since)), size, { fill: css("--around") });
     }
@@ -352,7 +344,7 @@ function player(report) {
   const telling = (c) => {
     const driven = favourite(c.drives);
     const acts = driven.shielded.some((steps) => steps.length > 0);
-    return 4 * Number(!meets(c, driven)) + 2 * Number(acts) + Number(driven.first === c.record.first);
+    return 4 * Number(driven.left_out.length === 0) + 2 * Number(acts) + Number(driven.first === c.record.first);
   };
   const known = report.cases.filter((c) => !c.found);
   const [first] = (known.length ? known : report.cases).toSorted((a, b) => telling(b) - telling(a));
