@@ -34,18 +34,20 @@ fi
 
 linker=$(rustc --print sysroot)/lib/rustlib/$(rustc --print host-tuple)/bin/rust-lld
 
-# image TARGET GOLDEN_FOLDER [cargo options]: builds the image and prints where it is.
-image() {
-    local target=$1 golden=$2 script=link.x variable
+# compile TARGET PROGRAM [cargo options]: builds a program of the workspace for a target and prints where it is.
+compile() {
+    local target=$1 program=$2 script=link.x variable
     shift 2
     [[ $target = thumb* ]] || script=riscv.x
     variable=CARGO_TARGET_$(tr 'a-z-' 'A-Z_' <<<"$target")
     export "${variable}_LINKER=$linker" "${variable}_RUSTFLAGS=-C link-arg=-T$script $target_flags"
     [ -z "$target_compiler" ] || export RUSTC=$target_compiler
-    CEDE_GOLDEN=$golden "${cargo[@]}" build --locked --release --manifest-path $workspace \
-        --target-dir "$build/target" --target "$target" -p cede-cortex-m "$@" >&2 || return
-    echo "$build/target/$target/release/cede-cortex-m"
+    "${cargo[@]}" build --locked --release --manifest-path $workspace \
+        --target-dir "$build/target" --target "$target" -p "$program" "$@" >&2 || return
+    echo "$build/target/$target/release/$program"
 }
+# image TARGET GOLDEN_FOLDER [cargo options]: builds the image and prints where it is.
+image() { CEDE_GOLDEN=$2 compile "$1" cede-cortex-m "${@:3}"; }
 # run IMAGE [MACHINE] [SHIFT]: an instruction takes 2^SHIFT ns, as `Clock` in the image has it.
 run() {
     local machine=${2:-mps2-an386} shift=${3:-10}
@@ -118,5 +120,10 @@ on "Cortex-M3, i16" thumbv7m-none-eabi mps2-an385 6 golden-i16 $max_soft_flash -
 # The M3 executes every instruction of the M0+; QEMU has no machine with an M0+ and enough flash.
 on "Cortex-M0+, i16" thumbv6m-none-eabi mps2-an385 6 golden-i16 $max_soft_flash --features i16
 on "rv32imac, i16" riscv32imac-unknown-none-elf virt 0 golden-i16 $max_soft_flash --features i16
+
+echo "== an RTIC application ($target on mps2-an386)"
+elf=$(compile $target cede-rtic)
+run "$elf" mps2-an386 6 || fail "the RTIC application failed"
+echo "20 decisions at 10 Hz, beneath sensors at 100 Hz"
 
 firmware/capi/check.sh

@@ -23,7 +23,9 @@ cargo rustc --lib --crate-type staticlib --release --locked --manifest-path "$he
 grep -oE '^[^#* /].*\bcede_[a-z0-9_]+\(' "$here/include/cede.h" | grep -oE 'cede_[a-z0-9_]+\($' | tr -d '(' | sort -u >"$folder/interface"
 mapfile -t roots < <(sed 's/^/--undefined=/' "$folder/interface")
 "${cross}ld" -r --gc-sections "${roots[@]}" "$folder/../cargo/$target/release/libcede.a" -o "$folder/whole.o"
-"${cross}objcopy" --keep-global-symbols="$folder/interface" --strip-unneeded "$folder/whole.o" "$folder/cede.o"
+# Beside it the same with the names of its functions, for a look at the graph of calls.
+"${cross}objcopy" --keep-global-symbols="$folder/interface" "$folder/whole.o" "$folder/named.o"
+"${cross}objcopy" --strip-unneeded "$folder/named.o" "$folder/cede.o"
 rm -f "$folder/libcede.a"
 "${cross}ar" rcsD "$folder/libcede.a" "$folder/cede.o"
 echo "$folder/libcede.a"

@@ -94,6 +94,11 @@
 #define CEDE_JUNCTION_WORDS 856
 
 /**
+ * What cede_known_answer() finds with the embedded policy.
+ */
+#define CEDE_EMBEDDED_ANSWER 697491257
+
+/**
  * Most tracks of an observation.
  */
 #define CEDE_MAX_TRACKS 24
@@ -132,7 +137,7 @@
  * The version of this interface. A program compares it with cede_abi_version() once, at its start: it grows with every
  * change of a structure, a size, a number or the meaning of a function.
  */
-#define CEDE_ABI_VERSION 4
+#define CEDE_ABI_VERSION 5
 
 /**
  * Alignment of all objects in bytes.
@@ -191,6 +196,10 @@ enum cede_status
      * A track without a candidate, or with more than CEDE_MAX_CANDIDATES.
      */
     CEDE_STATUS_CANDIDATE_COUNT = 12,
+    /**
+     * A number of the observation, or an acceleration, is out of its range.
+     */
+    CEDE_STATUS_INPUT_FAULT = 13,
     /**
      * The weights do not begin with CEDE.
      */
@@ -1282,24 +1291,6 @@ typedef struct cede_readiness {
 } cede_readiness;
 
 /**
- * The plan that the shield falls back on.
- */
-typedef struct cede_plan {
-    /**
-     * For so many periods it accelerates at ego_go; then it brakes.
-     */
-    uint16_t go;
-    /**
-     * 1 if there is a plan; 0 is no guarantee.
-     */
-    uint8_t exists;
-    /**
-     * 0.
-     */
-    uint8_t reserved;
-} cede_plan;
-
-/**
  * A policy. It refers to the weights that it was initialised with: they stay where and as they are for as long as the
  * policy, or a drive or an approach with it, is used.
  */
@@ -1482,6 +1473,38 @@ typedef struct cede_sight {
 } cede_sight;
 
 /**
+ * The plan that the shield falls back on.
+ */
+typedef struct cede_plan {
+    /**
+     * For so many periods it accelerates at ego_go; then it brakes.
+     */
+    uint16_t go;
+    /**
+     * 1 if there is a plan; 0 is no guarantee.
+     */
+    uint8_t exists;
+    /**
+     * 0.
+     */
+    uint8_t reserved;
+} cede_plan;
+
+/**
+ * How fast the ego may drive along its path, whoever is there: by speed limits, and in bends.
+ */
+typedef struct cede_profile {
+    /**
+     * The speed (m/s) that is allowed at this place; infinite, if nothing bounds it there.
+     */
+    float speed;
+    /**
+     * The largest acceleration (m/s^2) that keeps to the profile; infinite, if nothing bounds it.
+     */
+    float acceleration;
+} cede_profile;
+
+/**
  * The largest footprint of the vehicles on a path, centred on the reference point.
  */
 typedef struct cede_footprint {
@@ -1644,6 +1667,8 @@ cede_status cede_approach_enter(struct cede_approach *approach,
  * Whatever is returned, `decision` holds an acceleration that is finite and admissible, unless the pointer itself is bad.
  * If the observation cannot be read, the step is decided as one without sensors: by the plan that was verified last. If
  * the approach cannot be used, the cause is CEDE_CAUSE_NONE and the acceleration -CEDE_LAST_RESORT_BRAKING.
+ *
+ * CEDE_STATUS_FLOAT_ENVIRONMENT: the step was decided, but the FPU's mode is not the one that the guarantee was proved for.
  */
 cede_status cede_approach_decide(struct cede_approach *approach,
                                  uint64_t now_us,
@@ -1677,11 +1702,6 @@ cede_status cede_approach_ready(const struct cede_approach *approach,
 cede_status cede_approach_proposal(struct cede_approach *approach,
                                    const struct cede_observation *observation,
                                    float *acceleration);
-
-/**
- * The plan that the shield falls back on.
- */
-cede_status cede_approach_plan(const struct cede_approach *approach, struct cede_plan *plan);
 
 /**
  * Drives with another policy from the next decision on; the plan is kept.
@@ -1744,6 +1764,47 @@ cede_status cede_drive_init(struct cede_drive *drive,
                             const struct cede_contract *contract,
                             uint8_t part,
                             struct cede_detail *detail);
+
+/**
+ * The plan that the shield falls back on.
+ */
+cede_status cede_approach_plan(const struct cede_approach *approach, struct cede_plan *plan);
+
+/**
+ * The contract that it drives within.
+ */
+cede_status cede_approach_contract(const struct cede_approach *approach, struct cede_contract *contract);
+
+/**
+ * Writes 1 if the ego has precedence over the track with this number, on every path that the track may be on, since the last
+ * decision; else 0.
+ */
+cede_status cede_approach_goes_before(const struct cede_approach *approach,
+                                      uint16_t number,
+                                      uint8_t *first);
+
+/**
+ * Metres to spare of the best plan after one period at `acceleration` (m/s^2), given now while `previous` (m/s^2) is in
+ * effect; not negative exactly if the shield would accept it. It knows nobody but whom it sees, assumes no precedence, and
+ * remembers nothing.
+ *
+ * CEDE_STATUS_INPUT_FAULT: `fault`, which may be null, says what is wrong with the observation or an acceleration.
+ */
+cede_status cede_approach_margin(const struct cede_approach *approach,
+                                 const struct cede_observation *observation,
+                                 float previous,
+                                 float acceleration,
+                                 float *margin,
+                                 struct cede_fault *fault);
+
+/**
+ * What bounds the ego at arc length `s` (m) of its path with `speed` (m/s), whoever is there: it comes down to a lower speed
+ * ahead at 1.5 m/s^2. For a driver of one's own; cede_approach_decide() keeps to it already.
+ */
+cede_status cede_approach_profile(const struct cede_approach *approach,
+                                  float s,
+                                  float speed,
+                                  struct cede_profile *profile);
 
 /**
  * Begins a junction without paths, whatever was in the storage.
@@ -1886,6 +1947,20 @@ cede_status cede_junction_conflict(const struct cede_junction *junction,
                                    struct cede_conflict *conflict);
 
 /**
+ * Asks the policy's network about 64 inputs, drives a short encounter with it, and writes a number that stands for all bits of
+ * what comes out: a test of compiler, flash, core and FPU by everything that deciding uses, and one that fails if any of it
+ * computes something else than where the number was found. `answer` is CEDE_EMBEDDED_ANSWER for the embedded policy; for another one it is what a host
+ * writes.
+ *
+ * `junction` and `approach` are storage for the test, whatever was in it; nothing that is used may be there afterwards, and
+ * they can be used for others. It takes as long as a junction and 48 decisions.
+ */
+cede_status cede_known_answer(const struct cede_policy *policy,
+                              struct cede_junction *junction,
+                              struct cede_approach *approach,
+                              uint32_t *answer);
+
+/**
  * Makes a policy of a weights file (.cede): `bytes` bytes at `weights`, which are on a boundary of 4 (64 is fastest).
  *
  * The time is linear in the size: the checksum of all weights is checked.
@@ -1909,7 +1984,8 @@ cede_status cede_policy_describe(const struct cede_policy *policy, struct cede_p
 
 /**
  * Whether the FPU rounds to nearest and keeps subnormal numbers, as every decision assumes. To be called at start-up by the
- * task that decides: the mode may differ from task to task. Takes no time to speak of.
+ * task that decides: the mode may differ from task to task. cede_approach_decide() looks at it in every call. Takes no time to
+ * speak of.
  */
 cede_status cede_self_test(void);
 

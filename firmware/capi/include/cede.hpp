@@ -49,6 +49,9 @@ public:
     [[nodiscard]] cede_status init(const uint32_t *weights, uint32_t bytes) { return cede_policy_init(get(), weights, bytes); }
     [[nodiscard]] cede_status init_embedded() { return cede_policy_init_embedded(get()); }
     [[nodiscard]] cede_status check() const { return cede_policy_check(get()); }
+    [[nodiscard]] cede_status known_answer(cede_junction &junction, cede_approach &approach, uint32_t &answer) const {
+        return cede_known_answer(get(), &junction, &approach, &answer);
+    }
 };
 
 class drive : public object<cede_drive> {
@@ -99,6 +102,9 @@ public:
     }
     result set_contract(const cede_contract &contract) { return call(cede_approach_set_contract, get(), &contract); }
     [[nodiscard]] cede_status set_policy(const policy &policy) { return cede_approach_set_policy(get(), policy.get()); }
+    [[nodiscard]] cede_status goes_before(uint16_t number, uint8_t &first) const {
+        return cede_approach_goes_before(get(), number, &first);
+    }
     [[nodiscard]] cede_status forget(uint16_t number) { return cede_approach_forget(get(), number); }
 };
 

@@ -9,6 +9,7 @@ use crate::memory::{Plain, checked, offer, read, slice, write};
 use crate::object::{Storage, change, lend, seal_of, store};
 use crate::observation::{Seen, cede_observation};
 use crate::policy::cede_policy;
+use crate::self_test::float_environment;
 use crate::status::cede_status;
 use cede_controller::{
     Approach, Crosser, EnterError, Instant, Leader, MAX_SIGHTS, NotReady, PathId, Sight,
@@ -38,7 +39,7 @@ impl Storage for cede_approach {
 
 /// An approach, and the junction that it refers to.
 pub(crate) struct Entered {
-    approach: Approach<'static, 'static>,
+    pub(crate) approach: Approach<'static, 'static>,
     junction: *const cede_junction,
     /// The junction's checksum: another one is another junction.
     seal: u32,
@@ -99,18 +100,6 @@ pub struct cede_readiness {
     pub fault: cede_fault,
 }
 
-/// The plan that the shield falls back on.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct cede_plan {
-    /// For so many periods it accelerates at ego_go; then it brakes.
-    pub go: u16,
-    /// 1 if there is a plan; 0 is no guarantee.
-    pub exists: u8,
-    /// 0.
-    pub reserved: u8,
-}
-
 /// Begins an approach by path number `path` of a junction that is built. What the drive says is copied.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cede_approach_enter(
@@ -149,6 +138,8 @@ unsafe fn enter(
 /// Whatever is returned, `decision` holds an acceleration that is finite and admissible, unless the pointer itself is bad.
 /// If the observation cannot be read, the step is decided as one without sensors: by the plan that was verified last. If
 /// the approach cannot be used, the cause is CEDE_CAUSE_NONE and the acceleration -CEDE_LAST_RESORT_BRAKING.
+///
+/// CEDE_STATUS_FLOAT_ENVIRONMENT: the step was decided, but the FPU's mode is not the one that the guarantee was proved for.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cede_approach_decide(
     approach: *mut cede_approach,
@@ -194,7 +185,8 @@ unsafe fn decide(
         });
         let result = decided.as_ref().map_or(cede_decision::NONE, Into::into);
         write(decision, result)?;
-        decided.and(read)
+        decided.and(read)?;
+        float_environment()
     }
 }
 
@@ -284,27 +276,6 @@ unsafe fn propose(
         let proposal = with(approach, |approach| approach.proposal(&seen.observation()))?;
         write(acceleration, proposal)
     }
-}
-
-/// The plan that the shield falls back on.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn cede_approach_plan(
-    approach: *const cede_approach,
-    plan: *mut cede_plan,
-) -> cede_status {
-    // SAFETY: the header's contract of pointers.
-    unsafe {
-        current(approach).and_then(|entered| {
-            let there = entered.approach.plan();
-            let result = cede_plan {
-                go: there.map_or(0, |plan| plan.go),
-                exists: there.is_some().into(),
-                reserved: 0,
-            };
-            write(plan, result)
-        })
-    }
-    .into()
 }
 
 /// Drives with another policy from the next decision on; the plan is kept.
@@ -421,7 +392,12 @@ impl Entered {
 }
 
 /// The approach, if its junction is still the one that it entered.
-unsafe fn current<'a>(approach: *const cede_approach) -> Result<&'a Entered, cede_status> {
+///
+/// # Safety
+/// As [`lend`].
+pub(crate) unsafe fn current<'a>(
+    approach: *const cede_approach,
+) -> Result<&'a Entered, cede_status> {
     // SAFETY: by the header's contract of pointers.
     unsafe {
         let entered: &Entered = lend(approach)?;

@@ -6,13 +6,19 @@ use cede_controller::geometry::length;
 use core::hint::black_box;
 
 /// Whether the FPU rounds to nearest and keeps subnormal numbers, as every decision assumes. To be called at start-up by the
-/// task that decides: the mode may differ from task to task. Takes no time to speak of.
+/// task that decides: the mode may differ from task to task. cede_approach_decide() looks at it in every call. Takes no time to
+/// speak of.
 #[unsafe(no_mangle)]
 pub extern "C" fn cede_self_test() -> cede_status {
+    float_environment().into()
+}
+
+/// What [`cede_self_test`] says.
+pub(crate) fn float_environment() -> Result<(), cede_status> {
     if rounds_to_nearest() && keeps_subnormals() && extracts_roots() {
-        cede_status::Ok
+        Ok(())
     } else {
-        cede_status::FloatEnvironment
+        Err(cede_status::FloatEnvironment)
     }
 }
 

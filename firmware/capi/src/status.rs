@@ -30,6 +30,8 @@ pub enum cede_status {
     TooManyTracks = 11,
     /// A track without a candidate, or with more than CEDE_MAX_CANDIDATES.
     CandidateCount = 12,
+    /// A number of the observation, or an acceleration, is out of its range.
+    InputFault = 13,
 
     /// The weights do not begin with CEDE.
     WeightsMagic = 20,
@@ -150,6 +152,10 @@ pub(crate) const STATUS: &[(i32, &CStr)] = &[
     (
         cede_status::CandidateCount as i32,
         c"a track without a candidate, or with too many",
+    ),
+    (
+        cede_status::InputFault as i32,
+        c"a number of the observation, or an acceleration, is out of its range",
     ),
     (
         cede_status::WeightsMagic as i32,

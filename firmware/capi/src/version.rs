@@ -8,7 +8,7 @@ use core::ffi::{CStr, c_char};
 
 /// The version of this interface. A program compares it with cede_abi_version() once, at its start: it grows with every
 /// change of a structure, a size, a number or the meaning of a function.
-pub const CEDE_ABI_VERSION: u32 = 4;
+pub const CEDE_ABI_VERSION: u32 = 5;
 
 /// Alignment of all objects in bytes.
 pub const CEDE_ALIGNMENT: u32 = 8;

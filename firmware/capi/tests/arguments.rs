@@ -72,6 +72,17 @@ proptest! {
                 proposal
             };
             prop_assert!(proposal.abs() <= 3.0);
+            let (mut margin, mut first) = (0.0, 0);
+            // SAFETY: as the header says.
+            unsafe {
+                let given = f32::from_bits(most);
+                cede_approach_margin(&world.approach, &observation, given, given, &mut margin, null_mut());
+                cede_approach_goes_before(&world.approach, most as u16, &mut first);
+                let mut profile = std::mem::zeroed();
+                prop_assert_eq!(cede_approach_profile(&world.approach, given, given, &mut profile), OK);
+            }
+            prop_assert!(!margin.is_nan());
+            prop_assert!(first <= 1);
         }
     }
 
@@ -275,6 +286,19 @@ fn null_and_misaligned_pointers_have_a_status() {
         assert_eq!(up_to(approach, null(), &mut decision), null_pointer);
         assert_eq!(decision.cause, cede_cause::Fallback);
         assert_eq!(cede_approach_plan(approach, null_mut()), null_pointer);
+        assert_eq!(cede_approach_contract(approach, null_mut()), null_pointer);
+        assert_eq!(
+            cede_approach_goes_before(approach, 1, null_mut()),
+            null_pointer
+        );
+        assert_eq!(
+            cede_approach_margin(approach, &observation, 0.0, 0.0, null_mut(), null_mut()),
+            null_pointer
+        );
+        assert_eq!(
+            cede_approach_profile(approach, 0.0, 0.0, null_mut()),
+            null_pointer
+        );
         assert_eq!(cede_approach_set_policy(approach, null()), null_pointer);
         assert_eq!(
             cede_approach_set_contract(approach, null(), null_mut()),
@@ -359,6 +383,23 @@ fn null_and_misaligned_pointers_have_a_status() {
         assert_eq!(cede_junction_build(null_mut(), null_mut()), null_pointer);
         assert_eq!(cede_junction_check(null()), null_pointer);
         assert_eq!(cede_junction_count(null(), null_mut()), null_pointer);
+        let mut answer = 0;
+        assert_eq!(
+            cede_known_answer(null(), junction, approach, &mut answer),
+            null_pointer
+        );
+        assert_eq!(
+            cede_known_answer(&world.policy, null_mut(), approach, &mut answer),
+            null_pointer
+        );
+        assert_eq!(
+            cede_known_answer(&world.policy, junction, null_mut(), &mut answer),
+            null_pointer
+        );
+        assert_eq!(
+            cede_known_answer(&world.policy, junction, approach, null_mut()),
+            null_pointer
+        );
     }
 }
 

@@ -202,3 +202,97 @@ fn a_junction_tells_what_it_is() {
         );
     }
 }
+
+/// Two who wait at an all-way stop: it is known who goes first.
+#[test]
+fn an_approach_tells_what_it_knows() {
+    let mut world = World::new(&plain(&cede_controller::Contract::ALL_WAY_STOP));
+    let tracks = [track()];
+    assert_eq!(world.decide(1_000_000, &seen(&tracks)).0, OK);
+    // SAFETY: as the header says.
+    unsafe {
+        let mut contract: cede_contract = std::mem::zeroed();
+        assert_eq!(cede_approach_contract(&world.approach, &mut contract), OK);
+        assert_eq!(contract, plain(&cede_controller::Contract::ALL_WAY_STOP));
+
+        let mut first = 7;
+        assert_eq!(
+            cede_approach_goes_before(&world.approach, 17, &mut first),
+            OK
+        );
+        assert_eq!(first, 0);
+        assert_eq!(
+            cede_approach_goes_before(&world.approach, 99, &mut first),
+            OK
+        );
+        assert_eq!(first, 0, "nobody has this number");
+
+        let margin = |seen: &cede_observation, acceleration| {
+            let (mut margin, mut fault): (f32, cede_fault) = (f32::NAN, std::mem::zeroed());
+            let status = cede_approach_margin(
+                &world.approach,
+                seen,
+                0.0,
+                acceleration,
+                &mut margin,
+                &mut fault,
+            );
+            (status, margin, fault.kind)
+        };
+        let (status, braking, _) = margin(&seen(&tracks), -3.0);
+        assert_eq!(status, OK);
+        assert!(braking >= 0.0, "{braking}");
+        let (status, _, kind) = margin(&seen(&tracks), f32::NAN);
+        assert_eq!(
+            (status, kind),
+            (cede_status::InputFault, cede_fault_kind::Proposal)
+        );
+        let mut blind = seen(&tracks);
+        blind.ego.speed = f32::NAN;
+        let (status, _, kind) = margin(&blind, 0.0);
+        assert_eq!(
+            (status, kind),
+            (cede_status::InputFault, cede_fault_kind::Input)
+        );
+    }
+}
+
+#[test]
+fn the_ego_goes_before_one_that_arrives_later() {
+    let mut world = World::new(&plain(&cede_controller::Contract::ALL_WAY_STOP));
+    let mut later = track();
+    later.candidates[0].s = 0.0;
+    later.pose.position.x = 40.0;
+    let mut seen = seen(std::slice::from_ref(&later));
+    (seen.ego.s, seen.ego.pose.position.x, seen.ego.speed) = (30.0, -10.0, 2.0);
+    assert_eq!(world.decide(1_000_000, &seen).0, OK);
+    let mut first = 0;
+    // SAFETY: as the header says.
+    let status = unsafe { cede_approach_goes_before(&world.approach, 17, &mut first) };
+    assert_eq!((status, first), (OK, 1));
+}
+
+#[test]
+fn a_profile_is_that_of_the_limits() {
+    let mut world = World::empty();
+    // SAFETY: as the header says.
+    unsafe {
+        assert_eq!(cede_junction_init(&mut world.junction), OK);
+        let left = world.path(&common::points(&common::MINE));
+        let limit = cede_junction_add_speed_limit(&mut world.junction, left, 10.0, 5.0, null_mut());
+        assert_eq!(limit, OK);
+        assert_eq!(cede_junction_build(&mut world.junction, null_mut()), OK);
+        assert_eq!(world.drive(&worst_case()), OK);
+        assert_eq!(world.enter(left), OK);
+        let profile = |s, speed| {
+            let mut profile: cede_profile = std::mem::zeroed();
+            let status = cede_approach_profile(&world.approach, s, speed, &mut profile);
+            assert_eq!(status, OK);
+            profile
+        };
+        assert_eq!(profile(2.0, 1.0).speed, f32::INFINITY);
+        assert_eq!(profile(15.0, 5.0).speed, 5.0);
+        assert!(profile(15.0, 6.0).acceleration < 0.0);
+        assert!(profile(15.0, 2.0).acceleration > 0.0);
+    }
+}

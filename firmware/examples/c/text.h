@@ -5,8 +5,9 @@
 #include "cede.h"
 #include <stddef.h>
 
-/* What each platform has: text to its console. */
+/* What each platform has: text to its console, and a mode of the FPU by the bits of an Arm core's FPSCR, 0 for the usual one. */
 void port_write(const char *text);
+void port_float_mode(uint32_t fpscr);
 
 void put(const char *text);
 void put_line(const char *text);

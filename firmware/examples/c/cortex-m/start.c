@@ -7,7 +7,13 @@ extern uint32_t bss_start, bss_end;
 
 int main(void);
 void reset(void);
+void port_exit(uint32_t status);
 static void fault(void);
+
+/* An operating system has handlers of its own. */
+__attribute__((weak)) void SVC_Handler(void);
+__attribute__((weak)) void PendSV_Handler(void);
+__attribute__((weak)) void SysTick_Handler(void);
 
 typedef union {
     void (*handler)(void);
@@ -17,8 +23,9 @@ typedef union {
 __attribute__((section(".vectors"), used)) static const vector vectors[16] = {
     {.stack = &stack_top}, {.handler = reset}, {.handler = fault}, {.handler = fault}, {.handler = fault},
     {.handler = fault},    {.handler = fault}, {.handler = fault}, {.handler = fault}, {.handler = fault},
-    {.handler = fault},    {.handler = fault}, {.handler = fault}, {.handler = fault}, {.handler = fault},
-    {.handler = fault},
+    {.handler = fault},    {.handler = SVC_Handler},
+    {.handler = fault},    {.handler = fault},
+    {.handler = PendSV_Handler}, {.handler = SysTick_Handler},
 };
 
 #define SYS_OPEN 0x01u
@@ -50,7 +57,12 @@ void port_write(const char *text)
     (void)semihost(SYS_WRITE, write);
 }
 
-static void leave(uint32_t status)
+void port_float_mode(uint32_t fpscr)
+{
+    __asm__ volatile("vmsr fpscr, %0" ::"r"(fpscr));
+}
+
+void port_exit(uint32_t status)
 {
     const uint32_t block[2] = {APPLICATION_EXIT, status};
 
@@ -62,7 +74,22 @@ static void leave(uint32_t status)
 static void fault(void)
 {
     port_write("hard fault\n");
-    leave(1u);
+    port_exit(1u);
+}
+
+void SVC_Handler(void)
+{
+    fault();
+}
+
+void PendSV_Handler(void)
+{
+    fault();
+}
+
+void SysTick_Handler(void)
+{
+    fault();
 }
 
 /* What the compiler calls to copy and to clear. */
@@ -145,13 +172,15 @@ static void report(const uint32_t *word)
 __attribute__((noinline)) static uint32_t run(void)
 {
     uint32_t *word;
+    uint32_t *stack;
     uint32_t status;
 
-    for (word = &bss_end; word < (uint32_t *)__builtin_frame_address(0) - 32; word++) {
+    __asm__ volatile("mov %0, sp" : "=r"(stack));
+    for (word = &bss_end; word < stack - 32; word++) {
         *word = PAINT;
     }
 #ifdef FPSCR /* another mode of the FPU, to see it found */
-    __asm__ volatile("vmsr fpscr, %0" ::"r"(FPSCR));
+    port_float_mode(FPSCR);
 #endif
     status = (uint32_t)main();
     word = &bss_end;
@@ -176,5 +205,5 @@ void reset(void)
     for (to = &bss_start; to < &bss_end; to++) {
         *to = 0u;
     }
-    leave(run());
+    port_exit(run());
 }
