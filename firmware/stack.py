@@ -24,6 +24,7 @@ LINE = re.compile(r"^\s+([0-9a-f]+):\s+((?:[0-9a-f]{2,8} ?)+)\s*\t(\S+)\s*(.*)$"
 TARGET = re.compile(r"\b([0-9a-f]+) <([^>]+)>")
 # What does not write to its first operand.
 READS_FIRST = re.compile("cmp|cmn|tst|v?(?:stm|ldm)")
+CALLS = ("bl", "blx")
 CONDITIONS = "eq ne cs cc mi pl vs vc hi ls ge lt gt le hs lo".split()
 
 
@@ -104,6 +105,22 @@ def grown(instruction):
     return 0
 
 
+def moved(instruction):
+    """By how much the stack is deeper at the next instruction of the function."""
+    by = grown(instruction)
+    if by != 0 and base(instruction.name)[1]:
+        # Either it returns, or it is not executed.
+        if not returns(instruction):
+            raise Refused(f"a stack pointer that moves on a condition: {instruction}")
+        return 0
+    return by
+
+
+def jump(target, code, others):
+    """A branch inside the function, or to another one, whose return is that of this one."""
+    return ([], [target, *others], False) if target in code else ([target], others, True)
+
+
 class Program:
     def __init__(self, elf, objdump, calls):
         self.functions, self.memory = disassemble(elf, objdump)
@@ -115,7 +132,7 @@ class Program:
         return next((at for at, (known, _) in self.functions.items() if known == name), None)
 
     def bound(self, start):
-        """(bytes, path of functions) of a function and all that it calls."""
+        """Of a function and all that it calls: the most bytes, the calls that need them, and whether it ever returns."""
         if start in self.bounds:
             return self.bounds[start]
         if start not in self.functions:
@@ -126,65 +143,61 @@ class Program:
             raise Refused(f"a cycle of calls: {' > '.join([*cycle, name])}")
         self.open.append(start)
         try:
-            most, path = self.walk(start, code)
+            most, path, comes_back = self.walk(start, code)
         except Refused as why:
             raise Refused(f"{why}\n  in {name}") if "\n  in " not in str(why) else why
         self.open.pop()
-        self.bounds[start] = most, [name, *path]
+        self.bounds[start] = most, [name, *path], comes_back
         return self.bounds[start]
 
     def walk(self, start, code):
-        """Follows every branch of a function; the most bytes, and the path of calls that needs them."""
-        depths, work, most, path = {}, [(start, 0)], 0, []
+        """Follows every branch of a function: see `bound`."""
+        depths, work, most, path, comes_back = {}, [(start, 0)], 0, [], False
         while work:
             address, depth = work.pop()
-            if depth <= depths.get(address, -1):
-                continue
-            if address in depths:
+            if depths.setdefault(address, depth) != depth:
                 raise Refused(f"two depths of the stack at {address:#x}")
-            depths[address] = depth
-            instruction = code.get(address)
-            if instruction is None:
+            if address not in code:
                 raise Refused(f"no instruction at {address:#x}")
-            calls, targets = self.flow(self.functions[start][0], instruction, code)
-            after = depth + grown(instruction)
-            if after != depth and base(instruction.name)[1]:
-                # Either it returns, or it is not executed.
-                if not returns(instruction):
-                    raise Refused(f"a stack pointer that moves on a condition: {instruction}")
-                after = depth
-            most = max(most, after)
-            for callee in calls:
-                below, its_path = self.bound(callee)
-                if after + below > most:
-                    most, path = after + below, its_path
-            work.extend((target, after) for target in targets)
-        return most, path
+            instruction = code[address]
+            calls, targets, leaves = self.flow(self.functions[start][0], instruction, code)
+            depth += moved(instruction)
+            most = max(most, depth)
+            known = [self.bound(callee) for callee in calls]
+            for below, its_path, _ in known:
+                if depth + below > most:
+                    most, path = depth + below, its_path
+            goes_on = not known or any(returns for _, _, returns in known)
+            comes_back |= leaves and goes_on
+            if goes_on or instruction.name not in CALLS:
+                work.extend((target, depth) for target in targets if depths.get(target) != depth)
+        return most, path, comes_back
 
     def flow(self, function, instruction, code):
-        """The functions that an instruction calls or jumps to, and the addresses in this one that may be next."""
+        """The functions that an instruction calls or jumps to, the addresses in this one that may be next, and whether it may
+        go back to the caller, by itself or by the function that it jumps to."""
         name, text = instruction.name, instruction.operands
         after = instruction.address + instruction.size
         target = TARGET.search(text)
-        if name in ("bl", "blx"):
-            return [int(target[1], 16)] if target else self.trusted(function, instruction), [after]
+        if name in CALLS:
+            return [int(target[1], 16)] if target else self.trusted(function, instruction), [after], False
         if name in ("tbb", "tbh"):
-            return [], self.table(instruction, code)
+            return [], self.table(instruction, code), False
         if name in ("cbz", "cbnz") or (name[0] == "b" and name[1:] in CONDITIONS):
-            return self.jump(int(target[1], 16), code, [after])
+            return jump(int(target[1], 16), code, [after])
         if name == "b":
-            return self.jump(int(target[1], 16), code, [])
+            return jump(int(target[1], 16), code, [])
         if name == "bx" or (name.startswith("bx") and name[2:] in CONDITIONS):
             if text != "lr":
                 raise Refused(f"a jump through a register: {instruction}")
-            return [], [] if name == "bx" else [after]
+            return [], [] if name == "bx" else [after], True
         if name == "udf":
-            return [], []
+            return [], [], False
         if returns(instruction):
-            return [], [after] if base(name)[1] else []
+            return [], [after] if base(name)[1] else [], True
         if re.search(r"\bpc\b", text.split(",")[0]) or ("{" in text and "pc" in text):
             raise Refused(f"a jump that is computed: {instruction}")
-        return [], [after]
+        return [], [after], False
 
     def trusted(self, function, instruction):
         """Where a call through a register goes."""
@@ -193,10 +206,6 @@ class Program:
             if re.search(caller, function) and found:
                 return found
         raise Refused(f"a call through a register: {instruction}")
-
-    def jump(self, target, code, others):
-        """A branch inside the function, or to another one, whose return is that of this one."""
-        return ([], [target, *others]) if target in code else ([target], others)
 
     def table(self, instruction, code):
         """The targets of a table of branches, which lies behind it: as far as the first of them."""
@@ -234,7 +243,7 @@ def main():
             return 2
         try:
             program.open.clear()
-            most, path = program.bound(start)
+            most, path, _ = program.bound(start)
         except Refused as why:
             print(f"{root}: {why}", file=sys.stderr)
             status = 1

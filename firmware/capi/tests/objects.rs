@@ -257,19 +257,35 @@ fn an_approach_tells_what_it_knows() {
     }
 }
 
+/// The ego does as it is told; the other one stands far from the junction.
 #[test]
-fn the_ego_goes_before_one_that_arrives_later() {
+fn the_ego_goes_before_one_that_has_not_arrived() {
     let mut world = World::new(&plain(&cede_controller::Contract::ALL_WAY_STOP));
-    let mut later = track();
-    later.candidates[0].s = 0.0;
-    later.pose.position.x = 40.0;
-    let mut seen = seen(std::slice::from_ref(&later));
-    (seen.ego.s, seen.ego.pose.position.x, seen.ego.speed) = (30.0, -10.0, 2.0);
-    assert_eq!(world.decide(1_000_000, &seen).0, OK);
-    let mut first = 0;
-    // SAFETY: as the header says.
-    let status = unsafe { cede_approach_goes_before(&world.approach, 17, &mut first) };
-    assert_eq!((status, first), (OK, 1));
+    let mut far = track();
+    (far.speed, far.candidates[0].s, far.pose.position.x) = (0.0, 1.0, 39.0);
+    let mut seen = seen(std::slice::from_ref(&far));
+    let mut told = Vec::new();
+    for step in 0..60 {
+        // SAFETY: as the header says.
+        unsafe {
+            let ego = &mut seen.ego;
+            assert_eq!(
+                cede_junction_pose(&world.junction, 0, ego.s, &mut ego.pose),
+                OK
+            );
+            let (status, decision) = world.decide(1_000_000 + 100_000 * step, &seen);
+            assert_eq!(status, OK);
+            let mut first = 7;
+            let status = cede_approach_goes_before(&world.approach, 17, &mut first);
+            assert_eq!(status, OK);
+            told.push(first);
+            let speed = (seen.ego.speed + 0.1 * decision.acceleration).max(0.0);
+            seen.ego.s += 0.05 * (seen.ego.speed + speed);
+            seen.ego.speed = speed;
+        }
+    }
+    assert_eq!(told[0], 0);
+    assert!(told.contains(&1), "{told:?}");
 }
 
 #[test]

@@ -35,6 +35,8 @@ static int begin(void)
     contract.position_error = 0.1f; /* of which the bus takes 0.005 */
     contract.speed_error = 0.1f;
     contract.ego_disturbance = 0.1f; /* of which the bus takes 0.005, too */
+    contract.ego_acceleration = 2.5f;
+    contract.ego_go = 2.5f;
     return (cede_policy_init_embedded(&policy) == CEDE_STATUS_OK) &&
            (cede_drive_init(&drive, &policy, &contract, CEDE_PART_LEFT, NULL) == CEDE_STATUS_OK) &&
            (cede_junction_init(&junction) == CEDE_STATUS_OK) &&
@@ -150,6 +152,7 @@ static void carry_on_without_sensors(void)
 int main(void)
 {
     if (begin() == 0) {
+        (void)printf("can: the contract or the junction is refused\n");
         return 1;
     }
     drive_by_frames();

@@ -10,7 +10,7 @@
 
 #define PERIOD_MS 100u
 #define PERIODS 20u
-#define DECIDE_WORDS 1792u /* what docs/integration.md says that the stack needs, and what an interrupt puts on it */
+#define DECIDE_WORDS 2048u /* docs/integration.md: what a decision needs, the task's own frame, and a context of the FPU */
 #define OTHER_WORDS 128u
 
 void port_exit(uint32_t status); /* start.c's */
