@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u16)]
 #[allow(clippy::upper_case_acronyms)]
-pub enum Interrupt {
+pub(crate) enum Interrupt {
     /// Number 0.
     UARTRX0 = 0,
     /// Number 1.
@@ -18,8 +18,11 @@ unsafe impl cortex_m::interrupt::InterruptNumber for Interrupt {
     }
 }
 
+/// The name by which RTIC asks for it.
+pub(crate) use Interrupt as interrupt;
+
 /// Bits of an interrupt's priority.
-pub const NVIC_PRIO_BITS: u8 = 3;
+pub(crate) const NVIC_PRIO_BITS: u8 = 3;
 
 unsafe extern "C" {
     fn UARTRX0();
@@ -29,4 +32,4 @@ unsafe extern "C" {
 /// The vectors behind those of the core.
 #[unsafe(link_section = ".vector_table.interrupts")]
 #[unsafe(no_mangle)]
-pub static __INTERRUPTS: [unsafe extern "C" fn(); 2] = [UARTRX0, UARTTX0];
+static __INTERRUPTS: [unsafe extern "C" fn(); 2] = [UARTRX0, UARTTX0];

@@ -7,6 +7,7 @@
 mod device;
 mod vehicle;
 
+use cortex_m_rt as _; // the vectors and what comes before RTIC
 use cortex_m_semihosting::debug;
 use rtic_monotonics::systick::prelude::*;
 
@@ -22,7 +23,7 @@ const DECISIONS: u32 = 20;
 mod app {
     use super::{CLOCK, DECISIONS, Mono, end, vehicle};
     use crate::vehicle::{Site, Vehicles};
-    use cede_controller::{Approach, Cause, Fault, Instant, Observation};
+    use cede_controller::{Approach, Cause, Instant, Observation};
     use rtic_monotonics::systick::prelude::*;
 
     /// What both tasks use.
@@ -72,7 +73,7 @@ mod app {
                 ego,
                 tracks: &tracks,
             };
-            let now = Instant::from_millis(Mono::now().ticks().into());
+            let now = Instant::from_millis(Mono::now().duration_since_epoch().as_millis().into());
             let decision = context.local.approach.decide(now, &observation);
             let command = decision.acceleration;
             context.shared.vehicles.lock(|now| now.command = command);

@@ -54,7 +54,8 @@ fn contract() -> Option<Contract> {
 }
 
 /// Where the two are, and what the ego was told last.
-pub(crate) struct Vehicles {
+#[allow(unreachable_pub, reason = "RTIC's resources are public to its tasks")]
+pub struct Vehicles {
     /// Metres along its path, and m/s.
     ego: [f32; 2],
     other: [f32; 2],
