@@ -40,6 +40,7 @@ pub use contract::*;
 pub use decision::*;
 pub use detail::*;
 pub use drive::*;
+pub use field::*;
 pub use inspect::*;
 pub use junction::*;
 pub use known_answer::*;

@@ -16,12 +16,19 @@ systick_monotonic!(Mono, 1000);
 /// The core's clock in Hz.
 const CLOCK: u32 = 25_000_000;
 
+/// Milliseconds from one decision to the next: not those of the contract, by the feature `planted-late`.
+const PERIOD: u32 = if cfg!(feature = "planted-late") {
+    130
+} else {
+    100
+};
+
 /// Decisions until the application ends.
 const DECISIONS: u32 = 20;
 
 #[rtic::app(device = crate::device, peripherals = false, dispatchers = [UARTRX0, UARTTX0])]
 mod app {
-    use super::{CLOCK, DECISIONS, Mono, end, vehicle};
+    use super::{CLOCK, DECISIONS, Mono, PERIOD, end, vehicle};
     use crate::vehicle::{Site, Vehicles};
     use cede_controller::{Approach, Cause, Instant, Observation};
     use rtic_monotonics::systick::prelude::*;
@@ -79,7 +86,7 @@ mod app {
             context.shared.vehicles.lock(|now| now.command = command);
             sound &= matches!(decision.cause, Cause::Policy | Cause::Shielded { .. });
             sound &= decision.plan.is_some() && decision.fault.is_none();
-            next += 100.millis();
+            next += PERIOD.millis();
             Mono::delay_until(next).await;
         }
         end(sound)
