@@ -66,7 +66,7 @@ const CASES: &[Case] = &[
     ("data new-site --data alone.csv --out key.toml", 3, "key.toml exists"),
     // Evaluation.
     ("evaluate", 2, "--data <DIR|synthetic>"),
-    ("evaluate --data synthetic --driver fast", 2, "no driver is called `fast`; there are: all, replay"),
+    ("evaluate --data synthetic --driver fast", 2, "no driver is called `fast`; there are: replay"),
     ("evaluate --data synthetic --driver ''", 2, "no driver is called ``"),
     ("evaluate --data synthetic --mode ego --partner fast", 2, "no driver is called `fast`; there are: replay"),
     ("evaluate --data synthetic --split half", 2, "leave-one-file-out"),
@@ -81,6 +81,10 @@ const CASES: &[Case] = &[
     ("evaluate --data synthetic --driver cede --weights flipped.cede", 3, "the checksum does not fit: the file is damaged"),
     ("evaluate --data synthetic --driver cede --weights \\xff.cede", 3, "No such file"),
     ("evaluate --data synthetic --driver idm --weights cut.cede", 2, "--weights has no effect with --driver idm"),
+    ("evaluate --data synthetic --driver idm --svo 30", 2, "--svo has no effect with --driver idm"),
+    ("evaluate --data synthetic --driver cede --svo 91", 2, "an orientation is between 0 and 90°"),
+    ("evaluate --data synthetic --driver cede --svo high", 2, "`high` is not a number of degrees"),
+    ("replay alone.csv --svo 30", 2, "--svo has no effect with --driver replay"),
     // Contracts.
     ("evaluate --data synthetic --shield on --contract nowhere", 2, "no contract has this name: worst-case"),
     ("evaluate --data synthetic --shield on --contract \\xff.toml", 2, "invalid UTF-8"),

@@ -115,8 +115,9 @@ pub use junction::{
 };
 pub use observation::{Candidate, MAX_CANDIDATES, Observation, Sight, Track, Vehicle};
 pub use policy::{
-    Crosser, FeatureSet, FixedMlp, Leader, Mlp, NearbyVehicle, Network, Pair, Part, Perspective,
-    Policy, TrafficContext, VehicleState, Weights, WeightsError,
+    Crosser, Estimate, FeatureSet, FixedMlp, Leader, Mlp, NearbyVehicle, Network, Orientation,
+    OrientationError, OrientationFilter, Pair, Part, Perspective, Policy, TrafficContext,
+    VehicleState, Weights, WeightsError,
 };
 pub use real::{Elementary, Real};
 pub use separation::OrientedBox;

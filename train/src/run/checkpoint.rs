@@ -25,7 +25,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Version of the format that this program writes and reads.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 const MAGIC: &[u8; 8] = b"CEDECKPT";
 static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
