@@ -100,12 +100,15 @@ pub struct Approach<'j, 'w, const N: usize = MAX_OTHERS> {
     shield: Shield<'j, N>,
     /// The ego's SVO towards each track at the last step.
     orientations: Vec<(u16, f32), N>,
-    /// What each track has shown, if that is wanted.
-    filters: Option<Vec<Filter, N>>,
+    /// What the tracks have shown that the policy was asked about last, if that is wanted.
+    filters: Option<Vec<Filter, WATCHED>>,
     /// See [`Approach::set_traffic`].
     around: TrafficContext,
     prediction: Option<Prediction>,
 }
+
+/// Tracks of which it is known what they have shown: the policy is asked about one, sometimes about two by turns.
+const WATCHED: usize = 2;
 
 /// What is known of the orientation of a track.
 #[derive(Clone, Copy, Debug)]
@@ -381,15 +384,13 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
     fn look(&mut self, now: Instant, number: u16, pair: &Pair) -> Option<Estimate> {
         let period = self.shield.contract().period();
         let filters = self.filters.as_mut()?;
-        let known = filters.iter().position(|known| known.number == number);
-        let mut known = known.map_or_else(
-            || Filter {
-                number,
-                at: now,
-                filter: OrientationFilter::default(),
-            },
-            |place| filters.swap_remove(place),
-        );
+        let known = filters.iter().find(|known| known.number == number);
+        let mut known = known.copied().unwrap_or(Filter {
+            number,
+            at: now,
+            filter: OrientationFilter::default(),
+        });
+        filters.retain(|other| other.number != number);
         let elapsed = now.seconds_since(known.at);
         // Not looked at in between: what was expected then is of another time.
         if !(0.5 * period..1.5 * period).contains(&elapsed) {
@@ -398,8 +399,8 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
         known.at = now;
         let estimate = known.filter.look(&self.policy, pair, period);
         if filters.is_full() {
-            let oldest = (0..filters.len()).min_by_key(|&place| filters[place].at);
-            oldest.map(|place| filters.swap_remove(place));
+            let oldest = filters.iter().map(|other| other.at).min();
+            filters.retain(|other| Some(other.at) != oldest);
         }
         // There is room.
         let _ = filters.push(known);
