@@ -11,7 +11,9 @@ use crate::policy::features::arrival;
 use crate::policy::pair::{Pair, Part, VehicleState};
 use crate::policy::svo;
 use crate::policy::traffic::{NearbyVehicle, TrafficContext};
-use crate::policy::{Estimate, Orientation, OrientationError, OrientationFilter, Policy};
+#[cfg(feature = "estimates")]
+use crate::policy::{Estimate, OrientationFilter};
+use crate::policy::{Orientation, OrientationError, Policy};
 use crate::shield::door::{self, Admitted};
 use crate::shield::{Contract, EnterError, NotReady, Plan, Shield, SightError};
 use heapless::Vec;
@@ -28,6 +30,7 @@ pub struct Drive<'w> {
     policy: Policy<'w>,
     contract: Contract,
     part: Part,
+    #[cfg(feature = "estimates")]
     estimates: bool,
 }
 
@@ -39,11 +42,13 @@ impl<'w> Drive<'w> {
             policy,
             contract,
             part,
+            #[cfg(feature = "estimates")]
             estimates: false,
         }
     }
 
     /// Whether the orientations of others are estimated at every intersection to come. See [`Approach::set_estimates`].
+    #[cfg(feature = "estimates")]
     pub const fn set_estimates(&mut self, wanted: bool) {
         self.estimates = wanted;
     }
@@ -83,6 +88,7 @@ impl<'w> Drive<'w> {
             part: self.part,
             shield: Shield::enter(self.contract, junction, path)?,
             orientations: Vec::new(),
+            #[cfg(feature = "estimates")]
             filters: self.estimates.then(Vec::new),
             around: TrafficContext::default(),
             prediction: None,
@@ -101,6 +107,7 @@ pub struct Approach<'j, 'w, const N: usize = MAX_OTHERS> {
     /// The ego's SVO towards each track at the last step.
     orientations: Vec<(u16, f32), N>,
     /// What the tracks have shown that the policy was asked about last, if that is wanted.
+    #[cfg(feature = "estimates")]
     filters: Option<Vec<Filter, WATCHED>>,
     /// See [`Approach::set_traffic`].
     around: TrafficContext,
@@ -108,9 +115,11 @@ pub struct Approach<'j, 'w, const N: usize = MAX_OTHERS> {
 }
 
 /// Tracks of which it is known what they have shown: the policy is asked about one, sometimes about two by turns.
+#[cfg(feature = "estimates")]
 const WATCHED: usize = 2;
 
 /// What is known of the orientation of a track.
+#[cfg(feature = "estimates")]
 #[derive(Clone, Copy, Debug)]
 struct Filter {
     number: u16,
@@ -175,6 +184,7 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
     /// asked about: [`Prediction::shown`]. It changes no command.
     ///
     /// Cost: five more passes through the network in each decision.
+    #[cfg(feature = "estimates")]
     pub fn set_estimates(&mut self, wanted: bool) {
         self.filters = match (wanted, self.filters.take()) {
             (true, known) => Some(known.unwrap_or_default()),
@@ -339,6 +349,9 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
         nearby: &Vec<Nearby<'j>, N>,
         first: f32,
     ) -> Option<(f32, Prediction)> {
+        // Only estimates need the time.
+        #[cfg(not(feature = "estimates"))]
+        let _ = now;
         let mine = way.path(way.ego())?;
         let (mut critical, mut pair) = (None, None);
         for other in nearby.iter().filter(|other| other.meets(ego)) {
@@ -374,12 +387,14 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
             other,
             svo,
             acceleration: expected,
+            #[cfg(feature = "estimates")]
             shown: now.and_then(|now| self.look(now, other, &pair)),
         };
         Some((acceleration, prediction))
     }
 
     /// The orientation that track `number` has shown by `now`, if that is wanted.
+    #[cfg(feature = "estimates")]
     #[inline(never)]
     fn look(&mut self, now: Instant, number: u16, pair: &Pair) -> Option<Estimate> {
         let period = self.shield.contract().period();
@@ -709,6 +724,7 @@ mod tests {
         assert_eq!(approach.plan(), plan);
     }
 
+    #[cfg(feature = "estimates")]
     #[test]
     fn estimates_come_when_they_are_wanted_and_change_no_command() {
         let file = file(FeatureSet::Route, Perspective::Ego, 16);
@@ -791,7 +807,8 @@ mod tests {
 
     #[test]
     fn an_approach_fits_its_share_of_the_memory() {
+        let share = 3072 + if cfg!(feature = "estimates") { 192 } else { 0 };
         let size = size_of::<Approach<'_, '_>>();
-        assert!(size <= 3072, "{size}");
+        assert!(size <= share, "{size}");
     }
 }

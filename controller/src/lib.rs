@@ -79,6 +79,7 @@
 //! | `serde` | contracts and decisions as serde data; a contract that is read is validated |
 //! | `defmt` | contracts and decisions in a `defmt` log |
 //! | `many-others` | room for 24 others instead of 8, for hosts |
+//! | `estimates` | the orientations that others show, estimated online: `Approach::set_estimates` |
 //! | `core-sqrt` | square roots by the core, where it has an instruction for them: the same bits in less time |
 #![no_std]
 #![forbid(unsafe_code)]

@@ -2,12 +2,12 @@
 
 mod figure;
 
-use super::inspect::svg;
 use crate::drivers::policy;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::plural::Count;
 use crate::source::{Source, not_empty};
+use crate::svg;
 use crate::threads::Threads;
 use cede_data::output;
 use cede_sim::orientations::{AccelerationError, Drivers, Moment, Study};
@@ -22,7 +22,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE.cede")]
     weights: Option<PathBuf>,
     /// Path of the figure (SVG)
-    #[arg(long, default_value = "out/svo.svg", value_name = "FILE.svg", value_parser = svg)]
+    #[arg(long, default_value = "out/svo.svg", value_name = "FILE.svg", value_parser = svg::path)]
     draw: PathBuf,
     /// Seed of synthetic encounters [default: 0]
     #[arg(long)]

@@ -19,7 +19,7 @@ const LEGEND: f64 = 34.0;
 /// The report's colours, in light and in dark.
 const STYLE: &str = "\
 svg{background:#fcfcfb;color:#1c1917}text{fill:#6b6763}.title{fill:#1c1917;font-weight:600}\
-.grid{stroke:#e3e0dc}.bar{fill:#2563eb}.line{fill:none;stroke-width:1.8}\
+.grid{stroke:#e3e0dc}.bar{fill:#2563eb}.s0,.s1,.s2,.s3,.s4{fill:none;stroke-width:1.8}\
 .s0{stroke:#2563eb}.s1{stroke:#d97706}.s2{stroke:#059669}.s3{stroke:#db2777}.s4{stroke:#7c3aed}\
 @media(prefers-color-scheme:dark){svg{background:#16171a}text{fill:#9b9ba3}.title{fill:#ececec}\
 .grid{stroke:#313238}.bar{fill:#6ea0ff}\
@@ -75,10 +75,10 @@ fn legend(svg: &mut String) {
     for (i, (name, _)) in LINES.iter().enumerate() {
         let _ = writeln!(
             svg,
-            "<path class=\"line s{i}\" d=\"M{x} 20h16\"/><text x=\"{}\" y=\"24\">{name}</text>",
+            "<path class=\"s{i}\" d=\"M{x} 20h16\"/><text x=\"{}\" y=\"24\">{name}</text>",
             x + 21.0
         );
-        x += 36.0 + 6.5 * name.len() as f64;
+        x += 34.0 + 6.0 * name.len() as f64;
     }
 }
 
@@ -171,7 +171,7 @@ fn histogram(svg: &mut String, study: &Study) {
 fn curves(svg: &mut String, study: &Study) {
     let axes = Axes {
         x: [6.0, 0.0],
-        y: [0.4, 1.0],
+        y: [0.2, 1.0],
     };
     let title = format!("{}: who goes first", study.site);
     axes.draw(
@@ -179,7 +179,7 @@ fn curves(svg: &mut String, study: &Study) {
         &title,
         ["seconds before the conflict", "area under the curve"],
         &[6.0, 5.0, 4.0, 3.0, 2.0, 1.0, 0.0],
-        &[0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0],
+        &[0.2, 0.4, 0.5, 0.6, 0.8, 1.0],
     );
     for (i, (_, score)) in LINES.iter().enumerate() {
         let points = study
@@ -188,14 +188,14 @@ fn curves(svg: &mut String, study: &Study) {
             .filter_map(|moment| Some((moment.before_s, score(moment)?)));
         let mut path = String::new();
         for (x, y) in points {
-            let (x, y) = axes.at(x, y.max(0.4));
+            let (x, y) = axes.at(x, y.max(0.2));
             let _ = write!(
                 path,
                 "{}{x:.1} {y:.1}",
                 if path.is_empty() { "M" } else { "L" }
             );
         }
-        let _ = writeln!(svg, "<path class=\"line s{i}\" d=\"{path}\"/>");
+        let _ = writeln!(svg, "<path class=\"s{i}\" d=\"{path}\"/>");
     }
 }
 
@@ -213,7 +213,7 @@ mod tests {
         let study = Study::of(&dataset, &policy);
         let svg = svg(&[study.clone(), study]);
         assert_eq!(svg.matches("class=\"bar\"").count(), 2 * BINS);
-        assert_eq!(svg.matches("class=\"line").count(), 3 * LINES.len());
+        assert_eq!(svg.matches("class=\"s").count(), 3 * LINES.len());
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
     }
 }
