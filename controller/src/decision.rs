@@ -5,7 +5,6 @@ use crate::headroom::Headroom;
 use crate::plan::Plan;
 #[cfg(feature = "estimates")]
 use crate::policy::Estimate;
-use crate::policy::Estimate;
 use core::fmt;
 
 /// The ego's acceleration for the period that begins, and why it is what it is.
