@@ -44,7 +44,7 @@ impl Orientation {
         Self::of(FRAC_PI_6, 0.577_350_26),
         Self::LEARNED,
         Self::of(FRAC_PI_3, 1.732_050_8),
-        Self::of(PI * 5.0 / 12.0, 3.732_050_8),
+        Self::of(PI * 5.0 / 12.0, 3.732_051),
     ];
 
     const fn of(radians: f32, weight: f32) -> Self {
