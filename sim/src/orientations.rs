@@ -122,6 +122,9 @@ struct Scores {
     estimated: f64,
 }
 
+/// The scores of one encounter, and whether the left-turner went first.
+type Judged = (Scores, bool);
+
 /// Sums of squared errors (m²/s⁴) over steps.
 #[derive(Clone, Copy, Default)]
 struct Errors {
@@ -272,14 +275,14 @@ impl Moment {
             .iter()
             .filter_map(|case| Some((case, case.scores[i]?)))
             .collect();
-        let all: Vec<(Scores, bool)> = there
+        let all: Vec<Judged> = there
             .iter()
             .map(|(case, s)| (*s, case.left_first))
             .collect();
-        let area = |samples: &[(Scores, bool)], score: fn(&Scores) -> f64| {
+        let area = |samples: &[Judged], score: fn(&Scores) -> f64| {
             area_under_curve(samples.iter().map(|(scores, left)| (score(scores), *left)))
         };
-        let interval = |statistic: &dyn Fn(&[(Scores, bool)]) -> Option<f64>| {
+        let interval = |statistic: &dyn Fn(&[Judged]) -> Option<f64>| {
             let samples = there
                 .iter()
                 .map(|(case, s)| (&case.file, (*s, case.left_first)));
