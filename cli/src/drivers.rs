@@ -104,7 +104,7 @@ impl Drivers {
             ("--weights", weights.is_some()),
             ("--svo", !orientations.is_empty()),
         ];
-        for (option, _) in given.iter().filter(|(_, given)| without_cede && *given) {
+        if without_cede && let Some((option, _)) = given.iter().find(|(_, given)| *given) {
             let drivers: Vec<_> = self.names.iter().map(|name| name.text()).collect();
             let drivers = format!("--driver {}", drivers.join(","));
             return Err(Failure::ignored(option, &drivers));
