@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::input;
 use cede_controller::policy::weights;
-use cede_controller::{Contract, Policy};
+use cede_controller::{Contract, Orientation, Policy};
 use cede_data::Encounter;
 use cede_formats::cede;
 use cede_sim::driver::{Baseline, Cede, DriverFactory, FitError, PolicyAlone, Shielded};
@@ -18,8 +18,9 @@ pub(crate) struct Drivers {
     pub(crate) lenient: bool,
 }
 
+/// The name of one driver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Name {
+pub(crate) enum Name {
     Baseline(Baseline),
     Cede,
 }
@@ -36,6 +37,47 @@ impl Name {
             Self::Cede => "cede",
         }
     }
+
+    /// The driver of that name. `weights` is the file of Cede's policy.
+    ///
+    /// # Errors
+    /// The file cannot be used.
+    pub(crate) fn contender(self, weights: Option<&Path>) -> Result<Contender, Failure> {
+        Ok(match self {
+            Self::Baseline(baseline) => Contender::Baseline(baseline),
+            Self::Cede => Contender::Cede(policy(weights)?, self.text().to_owned()),
+        })
+    }
+}
+
+impl FromStr for Name {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let known = Self::all().find(|known| known.text() == text.trim());
+        known.ok_or_else(|| {
+            let all: Vec<_> = Self::all().map(Self::text).collect();
+            let all = all.join(", ");
+            format!("no driver is called `{text}`; there are: {all}")
+        })
+    }
+}
+
+/// The orientation that the policy shows, in degrees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Degrees(f32, Orientation);
+
+impl FromStr for Degrees {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let degrees: f32 = text
+            .trim()
+            .parse()
+            .map_err(|_| format!("`{text}` is not a number of degrees"))?;
+        let orientation = Orientation::from_degrees(degrees).map_err(|error| error.to_string())?;
+        Ok(Self(degrees, orientation))
+    }
 }
 
 impl Drivers {
@@ -47,22 +89,37 @@ impl Drivers {
         }
     }
 
-    /// The drivers. `weights` is the file of Cede's policy; the default is the embedded one.
+    /// The drivers. `weights` is the file of Cede's policy; the default is the embedded one. Cede is there once for each
+    /// of the `orientations`, if there are any.
     ///
     /// # Errors
-    /// The file cannot be used, or Cede is not among the drivers.
-    pub(crate) fn contenders(&self, weights: Option<&Path>) -> Result<Vec<Contender>, Failure> {
-        if weights.is_some() && !self.names.contains(&Name::Cede) {
+    /// The file cannot be used, its policy cannot show an orientation, or Cede is not among the drivers.
+    pub(crate) fn contenders(
+        &self,
+        weights: Option<&Path>,
+        orientations: &[Degrees],
+    ) -> Result<Vec<Contender>, Failure> {
+        let without_cede = !self.names.contains(&Name::Cede);
+        let given = [
+            ("--weights", weights.is_some()),
+            ("--svo", !orientations.is_empty()),
+        ];
+        if without_cede && let Some((option, _)) = given.iter().find(|(_, given)| *given) {
             let drivers: Vec<_> = self.names.iter().map(|name| name.text()).collect();
             let drivers = format!("--driver {}", drivers.join(","));
-            return Err(Failure::ignored("--weights", &drivers));
+            return Err(Failure::ignored(option, &drivers));
         }
         let mut contenders = Vec::new();
         for &name in &self.names {
-            contenders.push(match name {
-                Name::Baseline(baseline) => Contender::Baseline(baseline),
-                Name::Cede => Contender::Cede(policy(weights)?),
-            });
+            let plain = name.contender(weights)?;
+            match plain {
+                Contender::Cede(policy, _) if !orientations.is_empty() => {
+                    for &degrees in orientations {
+                        contenders.push(Contender::oriented(policy, degrees)?);
+                    }
+                }
+                plain => contenders.push(plain),
+            }
         }
         Ok(contenders)
     }
@@ -91,17 +148,9 @@ impl FromStr for Drivers {
         if text.split(',').any(|name| name.trim() == "all") {
             return Ok(Self::all());
         }
-        let named = |name: &str| {
-            let known = Name::all().find(|known| known.text() == name.trim());
-            known.ok_or_else(|| {
-                let all: Vec<_> = Name::all().map(Name::text).collect();
-                let all = all.join(", ");
-                format!("no driver is called `{name}`; there are: all, {all}")
-            })
-        };
         let mut names = Vec::new();
         for name in text.split(',') {
-            let name = named(name)?;
+            let name = Name::from_str(name).map_err(|error| error + ", all")?;
             if !names.contains(&name) {
                 names.push(name);
             }
@@ -116,17 +165,30 @@ impl FromStr for Drivers {
 pub(crate) enum Contender {
     /// A baseline, with or without the shield.
     Baseline(Baseline),
-    /// The controller, or its policy alone if there is no shield.
-    Cede(Policy<'static>),
+    /// The controller, or its policy alone if there is no shield; and its name in tables.
+    Cede(Policy<'static>, String),
 }
 
 impl Contender {
     /// Name in tables.
-    pub(crate) const fn name(&self) -> &'static str {
+    pub(crate) fn name(&self) -> &str {
         match self {
             Self::Baseline(baseline) => baseline.name(),
-            Self::Cede(_) => Name::Cede.text(),
+            Self::Cede(_, name) => name,
         }
+    }
+
+    /// Cede with another orientation.
+    fn oriented(policy: Policy<'static>, degrees: Degrees) -> Result<Self, Failure> {
+        let Degrees(value, orientation) = degrees;
+        let name = format!("{} {value}°", Name::Cede.text());
+        let policy = policy.oriented(orientation).map_err(|error| {
+            Failure::input(
+                error,
+                "leave out --svo, or name another policy with --weights: `cede train apg` trains such",
+            )
+        })?;
+        Ok(Self::Cede(policy, name))
     }
 
     /// Makes its drivers. Drivers that learn are fitted to `training`. With a `contract` there is a shield.
@@ -143,8 +205,8 @@ impl Contender {
             (Self::Baseline(baseline), Some(contract)) => {
                 Box::new(Shielded::new(baseline.fit(training)?, contract))
             }
-            (Self::Cede(policy), None) => Box::new(PolicyAlone::new(*policy)),
-            (Self::Cede(policy), Some(contract)) => Box::new(Cede::new(*policy, contract)),
+            (Self::Cede(policy, _), None) => Box::new(PolicyAlone::new(*policy)),
+            (Self::Cede(policy, _), Some(contract)) => Box::new(Cede::new(*policy, contract)),
         })
     }
 }

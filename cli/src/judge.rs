@@ -8,7 +8,7 @@ use crate::left_out::LeftOut;
 use crate::progress;
 use cede_controller::Contract;
 use cede_data::Dataset;
-use cede_sim::driver::{Baseline, FitError};
+use cede_sim::driver::FitError;
 use cede_sim::episode::Until;
 use cede_sim::evaluate::{
     Drive, Evaluation, Label, Mode, Protocol, Round, Selection, TableRow, evaluate,
@@ -26,7 +26,7 @@ pub(crate) struct Plan {
     /// Whether both vehicles or one are under test.
     pub(crate) mode: ModeName,
     /// In ego mode, the driver of the other vehicle.
-    pub(crate) partner: Baseline,
+    pub(crate) partner: Contender,
     /// When an episode ends.
     pub(crate) until: UntilName,
     /// The contracts of the shields; `None` is no shield. The vehicle under test carries the shield.
@@ -157,7 +157,7 @@ impl Plan {
             let factory = contender.fit(&round.training, shield)?;
             let partner = match self.mode {
                 ModeName::Joint => None,
-                ModeName::Ego => Some(self.partner.fit(&round.training)?),
+                ModeName::Ego => Some(self.partner.fit(&round.training, None)?),
             };
             let protocol = Protocol {
                 mode: partner.as_deref().map_or(Mode::Joint, Mode::Ego),
@@ -171,7 +171,7 @@ impl Plan {
 
     fn label<'l>(
         &self,
-        contender: &Contender,
+        contender: &'l Contender,
         dataset: &'l Dataset,
         selection: Selection,
         shield: Option<Contract>,

@@ -15,35 +15,50 @@ pub(crate) const PAPER: [(&str, &str, usize, f64, f64, usize); 6] = [
     ("paper: SACER-SVO", "test", 17, 0.9412, 0.3078, 0),
 ];
 
+const HEADER: [&str; 12] = [
+    "driver",
+    "n",
+    "priority accuracy",
+    "length error",
+    "in s",
+    "collisions",
+    "time-outs",
+    "RMSE 3 s",
+    "SVO RMSE",
+    "TTC < 1.5 s",
+    "jerk",
+    "shielded",
+];
+
+/// What is told of one vehicle under test alone.
+const EGO_HEADER: [&str; 2] = ["went first", "delay"];
+
 /// The rows of `rows` in blocks of equal site, split, mode, end and shield, with the paper's rows in the
 /// blocks that follow its protocol on its site.
 pub(crate) fn render(rows: &[TableRow]) -> String {
     let mut table = Table::new();
     table
         .load_style(presets::ASCII_MARKDOWN)
-        .set_content_arrangement(ContentArrangement::Disabled)
-        .set_header([
-            "driver",
-            "n",
-            "priority accuracy",
-            "length error",
-            "in s",
-            "collisions",
-            "time-outs",
-            "RMSE 3 s",
-            "SVO RMSE",
-            "TTC < 1.5 s",
-            "jerk",
-            "shielded",
-        ]);
-    for column in table.column_iter_mut().skip(1) {
-        column.set_cell_alignment(CellAlignment::Right);
-    }
+        .set_content_arrangement(ContentArrangement::Disabled);
     let mut text = String::new();
     for block in rows.chunk_by(|a, b| block_of(a) == block_of(b)) {
         let mut table = table.clone();
+        let alone = block.iter().any(|row| row.mode == "ego");
+        table.set_header(
+            HEADER
+                .iter()
+                .chain(if alone { &EGO_HEADER[..] } else { &[] }),
+        );
+        for column in table.column_iter_mut().skip(1) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
         for row in block {
-            table.add_row(cells(row));
+            let ego = if alone {
+                ego_cells(row).to_vec()
+            } else {
+                vec![]
+            };
+            table.add_row(cells(row).into_iter().chain(ego));
         }
         if let Some(first) = block.first() {
             let protocol = (
@@ -147,6 +162,16 @@ fn cells(row: &TableRow) -> [String; 12] {
         percent(row.critical_ttc_share),
         number(row.jerk_rms, 1, " m/s³"),
         percent(row.shielded_steps),
+    ]
+}
+
+fn ego_cells(row: &TableRow) -> [String; 2] {
+    let range = row
+        .delay_s_interval_by_file
+        .map(|[low, high]| format!(" [{low:.2}, {high:.2}]"));
+    [
+        share(row.went_first, row.went_first_interval),
+        number(row.delay_s, 2, " s") + &range.unwrap_or_default(),
     ]
 }
 

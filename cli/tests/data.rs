@@ -110,6 +110,42 @@ fn numbers_and_a_drawing_of_synthetic_encounters() {
 }
 
 #[test]
+fn orientations_in_numbers_and_as_a_figure() {
+    let folder = tempfile::tempdir().unwrap();
+    let svo = [
+        "data",
+        "svo",
+        "--data",
+        "synthetic",
+        "--encounters",
+        "60",
+        "--draw",
+        "svo.svg",
+    ];
+    let text = cede(folder.path(), &svo).success();
+    let text = String::from_utf8(text.get_output().stdout.clone()).unwrap();
+    for said in [
+        "who went first",
+        "area under the curve",
+        "with its orientation, as estimated",
+    ] {
+        assert!(text.contains(said), "{text}");
+    }
+    let figure = std::fs::read_to_string(folder.path().join("svo.svg")).unwrap();
+    assert!(figure.starts_with("<svg") && figure.contains("class=\"bar\""));
+    let json = cede(folder.path(), &[&svo[..], &["--json"]].concat()).success();
+    let studies: serde_json::Value = serde_json::from_slice(&json.get_output().stdout).unwrap();
+    let study = &studies[0];
+    assert!(study["encounters"].as_u64().unwrap() >= 60);
+    let area = study["first"][0]["svo"].as_f64().unwrap();
+    assert!(
+        (0.9..=1.0).contains(&area),
+        "0.5 s before the conflict: {area}"
+    );
+    assert!(study["acceleration"]["estimated"].as_f64().unwrap() > 0.0);
+}
+
+#[test]
 fn bad_input_ends_with_code_3_and_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let broken = tracks().replacen("2,0.5,-2", "2,0.5,west", 1);

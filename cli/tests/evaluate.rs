@@ -215,3 +215,24 @@ fn bad_input_ends_with_code_3_and_the_mend() {
     );
     assert!(message.contains("cannot write"), "{message}");
 }
+
+#[test]
+fn each_orientation_has_its_row_and_the_middle_one_is_the_policy_as_it_learned() {
+    let rows = |arguments: &[&str]| -> Vec<Value> {
+        let common = [
+            "--driver", "cede", "--split", "all", "--until", "cleared", "--mode", "ego", "--json",
+        ];
+        let text = stdout(&mut evaluate(&[&common[..], arguments].concat()));
+        let object: Value = serde_json::from_str(&text).unwrap();
+        object["rows"].as_array().unwrap().clone()
+    };
+    let dial = rows(&["--svo", "15,45,75", "--partner", "cede"]);
+    let names = dial.iter().map(|row| row["driver"].as_str().unwrap());
+    assert!(names.eq(["cede 15°", "cede 45°", "cede 75°"]));
+    let first = |row: &Value| row["went_first"].as_f64().unwrap();
+    assert!(first(&dial[0]) > first(&dial[1]) && first(&dial[1]) > first(&dial[2]));
+    assert!(dial[0]["delay_s"].as_f64() < dial[2]["delay_s"].as_f64());
+    let mut plain = rows(&["--partner", "cede"]).remove(0);
+    plain["driver"] = dial[1]["driver"].clone();
+    assert_eq!(plain, dial[1]);
+}

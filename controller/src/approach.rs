@@ -7,11 +7,13 @@ use crate::junction::{
     Class, ConflictKind, Junction, MAX_OTHERS, Path, PathId, RouteConflict, Way,
 };
 use crate::observation::{Observation, Sight, Track, Vehicle};
-use crate::policy::Policy;
 use crate::policy::features::arrival;
 use crate::policy::pair::{Pair, Part, VehicleState};
 use crate::policy::svo;
 use crate::policy::traffic::{NearbyVehicle, TrafficContext};
+#[cfg(feature = "estimates")]
+use crate::policy::{Estimate, OrientationFilter};
+use crate::policy::{Orientation, OrientationError, Policy};
 use crate::shield::door::{self, Admitted};
 use crate::shield::{Contract, EnterError, NotReady, Plan, Shield, SightError};
 use heapless::Vec;
@@ -28,6 +30,8 @@ pub struct Drive<'w> {
     policy: Policy<'w>,
     contract: Contract,
     part: Part,
+    #[cfg(feature = "estimates")]
+    estimates: bool,
 }
 
 impl<'w> Drive<'w> {
@@ -38,7 +42,24 @@ impl<'w> Drive<'w> {
             policy,
             contract,
             part,
+            #[cfg(feature = "estimates")]
+            estimates: false,
         }
+    }
+
+    /// Whether the orientations of others are estimated at every intersection to come. See [`Approach::set_estimates`].
+    #[cfg(feature = "estimates")]
+    pub const fn set_estimates(&mut self, wanted: bool) {
+        self.estimates = wanted;
+    }
+
+    /// Shows `orientation` at every intersection to come. See [`Approach::set_orientation`].
+    ///
+    /// # Errors
+    /// See [`Policy::oriented`]; nothing is changed then.
+    pub fn set_orientation(&mut self, orientation: Orientation) -> Result<(), OrientationError> {
+        self.policy = self.policy.oriented(orientation)?;
+        Ok(())
     }
 
     /// Begins to approach `junction` on `path`, and watches up to [`MAX_OTHERS`] others that matter.
@@ -67,6 +88,8 @@ impl<'w> Drive<'w> {
             part: self.part,
             shield: Shield::enter(self.contract, junction, path)?,
             orientations: Vec::new(),
+            #[cfg(feature = "estimates")]
+            filters: self.estimates.then(Vec::new),
             around: TrafficContext::default(),
             prediction: None,
         })
@@ -83,9 +106,26 @@ pub struct Approach<'j, 'w, const N: usize = MAX_OTHERS> {
     shield: Shield<'j, N>,
     /// The ego's SVO towards each track at the last step.
     orientations: Vec<(u16, f32), N>,
+    /// What the tracks have shown that the policy was asked about last, if that is wanted.
+    #[cfg(feature = "estimates")]
+    filters: Option<Vec<Filter, WATCHED>>,
     /// See [`Approach::set_traffic`].
     around: TrafficContext,
     prediction: Option<Prediction>,
+}
+
+/// Tracks of which it is known what they have shown: the policy is asked about one, sometimes about two by turns.
+#[cfg(feature = "estimates")]
+const WATCHED: usize = 2;
+
+/// What is known of the orientation of a track.
+#[cfg(feature = "estimates")]
+#[derive(Clone, Copy, Debug)]
+struct Filter {
+    number: u16,
+    /// When it was looked at last.
+    at: Instant,
+    filter: OrientationFilter,
 }
 
 /// Braking (m/s²) to its line, up to which an ego with a driver of its own leaves everything to that one.
@@ -126,6 +166,30 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
     /// Drives with `policy` from the next decision on.
     pub const fn set_policy(&mut self, policy: Policy<'w>) {
         self.policy = policy;
+    }
+
+    /// Shows `orientation` from the next decision on: 0 an egoist, π/4 as learned, π/2 an altruist.
+    ///
+    /// It reaches the policy's proposals alone: neither the shield nor what the ego does with its precedence
+    /// ([`Approach::decide`]) depends on it.
+    ///
+    /// # Errors
+    /// See [`Policy::oriented`]; nothing is changed then.
+    pub fn set_orientation(&mut self, orientation: Orientation) -> Result<(), OrientationError> {
+        self.policy = self.policy.oriented(orientation)?;
+        Ok(())
+    }
+
+    /// Whether the orientation that the other shows is estimated from the next decision on, of the one that the policy is
+    /// asked about: [`Prediction::shown`]. It changes no command.
+    ///
+    /// Cost: five more passes through the network in each decision.
+    #[cfg(feature = "estimates")]
+    pub fn set_estimates(&mut self, wanted: bool) {
+        self.filters = match (wanted, self.filters.take()) {
+            (true, known) => Some(known.unwrap_or_default()),
+            (false, _) => None,
+        };
     }
 
     /// Drives within `contract` from the next decision on. The remembered plan is kept if it is safe under it.
@@ -171,7 +235,7 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
     /// its path, or the junction's lateral acceleration in bends ([`crate::Profile`]). For those over whom it has
     /// precedence it does not brake, and sets off. See [`Shield::filter`].
     ///
-    /// Cost: one pass through the network, and the shield's. The
+    /// Cost: one pass through the network, two with another orientation than the learned, and the shield's. The
     /// acceleration is finite and within the contract's, whatever the bits of the observation.
     pub fn decide(&mut self, now: Instant, observation: &Observation<'_>) -> Decision {
         let first = if observation.ego.speed > SLOW {
@@ -216,7 +280,7 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
         let mut proposed = 0.0;
         if self.shield.is_new(now) {
             // The shield finds a fault again and carries on with its plan.
-            if let Ok((asked, limit)) = self.ask(observation, wanted.first) {
+            if let Ok((asked, limit)) = self.ask(Some(now), observation, wanted.first) {
                 self.prediction = asked.map(|(_, prediction)| prediction);
                 proposed = match asked {
                     None => wanted.free,
@@ -254,9 +318,10 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
     ///
     /// Cost: one pass through the network. Finite and within ± 3.
     pub fn proposal(&mut self, observation: &Observation<'_>) -> f32 {
-        self.ask(observation, f32::MIN).map_or(0.0, |(asked, _)| {
-            asked.map_or(FREE, |(acceleration, _)| acceleration)
-        })
+        self.ask(None, observation, f32::MIN)
+            .map_or(0.0, |(asked, _)| {
+                asked.map_or(FREE, |(acceleration, _)| acceleration)
+            })
     }
 
     /// What the policy proposes, and at least `first` (m/s²) for those over whom the ego has precedence; nothing, if nobody
@@ -264,6 +329,7 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
     #[inline(never)]
     fn ask(
         &mut self,
+        now: Option<Instant>,
         observation: &Observation<'_>,
         first: f32,
     ) -> Result<(Option<(f32, Prediction)>, f32), Fault> {
@@ -272,16 +338,20 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
         let nearby = nearby::<N>(way, contract, &ego, observation.tracks);
         let (profile, response) = (way.profile(), contract.response());
         let limit = profile.acceleration(ego.s, ego.speed, response);
-        Ok((self.propose(way, &ego, &nearby, first), limit))
+        Ok((self.propose(now, way, &ego, &nearby, first), limit))
     }
 
     fn propose(
         &mut self,
+        now: Option<Instant>,
         way: Way<'j>,
         ego: &Vehicle,
         nearby: &Vec<Nearby<'j>, N>,
         first: f32,
     ) -> Option<(f32, Prediction)> {
+        // Only estimates need the time.
+        #[cfg(not(feature = "estimates"))]
+        let _ = now;
         let mine = way.path(way.ego())?;
         let (mut critical, mut pair) = (None, None);
         for other in nearby.iter().filter(|other| other.meets(ego)) {
@@ -317,8 +387,39 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
             other,
             svo,
             acceleration: expected,
+            #[cfg(feature = "estimates")]
+            shown: now.and_then(|now| self.look(now, other, &pair)),
         };
         Some((acceleration, prediction))
+    }
+
+    /// The orientation that track `number` has shown by `now`, if that is wanted.
+    #[cfg(feature = "estimates")]
+    #[inline(never)]
+    fn look(&mut self, now: Instant, number: u16, pair: &Pair) -> Option<Estimate> {
+        let period = self.shield.contract().period();
+        let filters = self.filters.as_mut()?;
+        let known = filters.iter().find(|known| known.number == number);
+        let mut known = known.copied().unwrap_or(Filter {
+            number,
+            at: now,
+            filter: OrientationFilter::default(),
+        });
+        filters.retain(|other| other.number != number);
+        let elapsed = now.seconds_since(known.at);
+        // Not looked at in between: what was expected then is of another time.
+        if !(0.5 * period..1.5 * period).contains(&elapsed) {
+            known.filter.skip();
+        }
+        known.at = now;
+        let estimate = known.filter.look(&self.policy, pair, period);
+        if filters.is_full() {
+            let oldest = filters.iter().map(|other| other.at).min();
+            filters.retain(|other| Some(other.at) != oldest);
+        }
+        // There is room.
+        let _ = filters.push(known);
+        Some(estimate)
     }
 
     /// The ego's SVO towards track `number` at the last step; the first one, if there was none.
@@ -523,7 +624,7 @@ mod tests {
                 ego: on(&site, 0, 0.0, 5.0),
                 tracks: &tracks,
             };
-            approach.ask(&seen, FREE).unwrap().0.unwrap()
+            approach.ask(None, &seen, FREE).unwrap().0.unwrap()
         };
         let (a, c) = ((1, 5.0, 4.0), (3, 20.0, 9.0));
         // 55 m at 4 m/s, and 40 m at 9 m/s.
@@ -558,7 +659,7 @@ mod tests {
                 ego: on(&site, 0, line - short, speed),
                 tracks: &tracks,
             };
-            let wanted = approach.ask(&seen, most).unwrap().0.unwrap().0;
+            let wanted = approach.ask(None, &seen, most).unwrap().0.unwrap().0;
             let decision = approach.decide_up_to(Instant::from_millis(at), &seen, most);
             (wanted, decision.acceleration)
         };
@@ -623,6 +724,57 @@ mod tests {
         assert_eq!(approach.plan(), plan);
     }
 
+    #[cfg(feature = "estimates")]
+    #[test]
+    fn estimates_come_when_they_are_wanted_and_change_no_command() {
+        let file = file(FeatureSet::Route, Perspective::Ego, 16);
+        let site = site();
+        let decisions = |wanted: bool| -> Vec<_> {
+            let mut drive = drive(&file);
+            drive.set_estimates(wanted);
+            let mut approach = drive.enter(&site, PathId::new(0)).unwrap();
+            let decide = |step: u16| {
+                let t = 0.1 * f32::from(step);
+                let tracks = tracks(&site, &[(1, 5.0 + 4.0 * t, 4.0), (3, 2.0 + 9.0 * t, 9.0)]);
+                let seen = Observation {
+                    ego: on(&site, 0, 5.0 * t, 5.0),
+                    tracks: &tracks,
+                };
+                approach.decide(Instant::from_millis(100 * u64::from(step)), &seen)
+            };
+            (0..12).map(decide).collect()
+        };
+        for (plain, estimated) in decisions(false).iter().zip(&decisions(true)) {
+            assert_eq!(plain.acceleration, estimated.acceleration);
+            let (plain, estimated) = (plain.prediction.unwrap(), estimated.prediction.unwrap());
+            assert_eq!((plain.shown, plain.svo), (None, estimated.svo));
+            assert!((0.0..=1.0).contains(&estimated.shown.unwrap().confidence));
+        }
+    }
+
+    #[test]
+    fn a_dial_in_its_middle_changes_nothing_and_an_altruist_proposes_less() {
+        let file = file(FeatureSet::Route, Perspective::Ego, 16);
+        let site = site();
+        let tracks = tracks(&site, &[(1, 20.0, 6.0)]);
+        let seen = Observation {
+            ego: on(&site, 0, 20.0, 5.0),
+            tracks: &tracks,
+        };
+        let proposal = |degrees: Option<f32>| {
+            let mut drive = drive(&file);
+            if let Some(degrees) = degrees {
+                let orientation = Orientation::from_degrees(degrees).unwrap();
+                drive.set_orientation(orientation).unwrap();
+            }
+            let mut approach = drive.enter(&site, PathId::new(0)).unwrap();
+            approach.proposal(&seen)
+        };
+        let plain = proposal(None);
+        assert_eq!(proposal(Some(45.0)), plain);
+        assert!(proposal(Some(75.0)) <= plain && plain <= proposal(Some(15.0)));
+    }
+
     #[test]
     fn no_proposal_exceeds_the_profile() {
         let file = file(FeatureSet::Route, Perspective::Ego, 16);
@@ -655,7 +807,8 @@ mod tests {
 
     #[test]
     fn an_approach_fits_its_share_of_the_memory() {
+        let share = 3072 + if cfg!(feature = "estimates") { 192 } else { 0 };
         let size = size_of::<Approach<'_, '_>>();
-        assert!(size <= 3072, "{size}");
+        assert!(size <= share, "{size}");
     }
 }

@@ -3,6 +3,8 @@
 use crate::fault::Fault;
 use crate::headroom::Headroom;
 use crate::plan::Plan;
+#[cfg(feature = "estimates")]
+use crate::policy::Estimate;
 use core::fmt;
 
 /// The ego's acceleration for the period that begins, and why it is what it is.
@@ -48,6 +50,10 @@ pub struct Prediction {
     pub svo: f32,
     /// The acceleration (m/s²) that is expected of it, within ± 3.
     pub acceleration: f32,
+    /// The orientation that it has shown, if that is [estimated](crate::Approach::set_estimates).
+    #[cfg(feature = "estimates")]
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub shown: Option<Estimate>,
 }
 
 /// Who decided.

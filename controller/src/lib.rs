@@ -79,6 +79,7 @@
 //! | `serde` | contracts and decisions as serde data; a contract that is read is validated |
 //! | `defmt` | contracts and decisions in a `defmt` log |
 //! | `many-others` | room for 24 others instead of 8, for hosts |
+//! | `estimates` | the orientations that others show, estimated online: `Approach::set_estimates` |
 //! | `core-sqrt` | square roots by the core, where it has an instruction for them: the same bits in less time |
 #![no_std]
 #![forbid(unsafe_code)]
@@ -115,8 +116,9 @@ pub use junction::{
 };
 pub use observation::{Candidate, MAX_CANDIDATES, Observation, Sight, Track, Vehicle};
 pub use policy::{
-    Crosser, FeatureSet, FixedMlp, Leader, Mlp, NearbyVehicle, Network, Pair, Part, Perspective,
-    Policy, TrafficContext, VehicleState, Weights, WeightsError,
+    Crosser, Estimate, FeatureSet, FixedMlp, Leader, Mlp, NearbyVehicle, Network, Orientation,
+    OrientationError, OrientationFilter, Pair, Part, Perspective, Policy, TrafficContext,
+    VehicleState, Weights, WeightsError,
 };
 pub use real::{Elementary, Real};
 pub use separation::OrientedBox;

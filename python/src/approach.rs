@@ -22,11 +22,20 @@ pub(crate) struct Drive(cede::Drive<'static>);
 #[pymethods]
 impl Drive {
     #[new]
-    #[pyo3(signature = (policy = None, contract = None, *, part = "left"))]
-    fn new(policy: Option<Policy>, contract: Option<Contract>, part: &str) -> PyResult<Self> {
+    #[pyo3(signature = (policy = None, contract = None, *, part = "left", svo = None, estimates = false))]
+    fn new(
+        policy: Option<Policy>,
+        contract: Option<Contract>,
+        part: &str,
+        svo: Option<f32>,
+        estimates: bool,
+    ) -> PyResult<Self> {
         let policy = policy.map_or_else(Policy::embedded, Ok)?;
+        let policy = svo.map_or(Ok(policy), |svo| policy.oriented(svo))?;
         let part = named("part", part, &PARTS)?;
-        Ok(Self(cede::Drive::new(policy.0, numbers(contract), part)))
+        let mut drive = cede::Drive::new(policy.0, numbers(contract), part);
+        drive.set_estimates(estimates);
+        Ok(Self(drive))
     }
 
     /// Begins to approach `junction` on `path`.

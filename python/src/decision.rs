@@ -111,6 +111,11 @@ impl Decision {
             other: p.other,
             svo: p.svo,
             acceleration: p.acceleration,
+            shown: p.shown.map(|shown| Estimate {
+                svo: shown.svo,
+                confidence: shown.confidence,
+                acceleration: shown.acceleration,
+            }),
         })
     }
 
@@ -283,6 +288,28 @@ pub(crate) struct Prediction {
     other: u16,
     svo: f32,
     acceleration: f32,
+    shown: Option<Estimate>,
+}
+
+/// The orientation that an other has shown.
+#[pyclass(frozen, get_all, module = "cede", from_py_object)]
+#[derive(Clone, Copy)]
+pub(crate) struct Estimate {
+    svo: f32,
+    confidence: f32,
+    acceleration: f32,
+}
+
+#[pymethods]
+impl Estimate {
+    fn __repr__(&self) -> String {
+        let Self {
+            svo,
+            confidence,
+            acceleration,
+        } = self;
+        format!("Estimate(svo={svo}, confidence={confidence}, acceleration={acceleration})")
+    }
 }
 
 #[pymethods]
@@ -292,6 +319,7 @@ impl Prediction {
             other,
             svo,
             acceleration,
+            ..
         } = self;
         format!("Prediction(other={other}, svo={svo}, acceleration={acceleration})")
     }

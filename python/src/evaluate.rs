@@ -52,7 +52,7 @@ pub(crate) fn evaluate(
     let selection: Selection = split.parse().map_err(error)?;
     let plan = Plan {
         partner: (mode == "ego")
-            .then(|| partner.parse::<Baseline>().map_err(error))
+            .then(|| Contender::named(partner))
             .transpose()?,
         until: named(
             "until",
@@ -83,7 +83,7 @@ pub(crate) fn evaluate(
 
 /// How the driver is judged.
 struct Plan {
-    partner: Option<Baseline>,
+    partner: Option<Contender>,
     until: Until,
     shield: Option<cede_controller::Contract>,
     seed: u64,
@@ -100,8 +100,9 @@ impl Plan {
         let mut drives = Vec::new();
         for round in selection.rounds(dataset) {
             let factory = contender.fit(&round.training, self.shield)?;
-            let partner = self.partner.map(|partner| partner.fit(&round.training));
-            let partner = partner.transpose().map_err(unfitted)?;
+            let partner = self.partner.as_ref();
+            let partner = partner.map(|partner| partner.fit(&round.training, None));
+            let partner = partner.transpose()?;
             let protocol = Protocol {
                 mode: partner.as_deref().map_or(Mode::Joint, Mode::Ego),
                 until: self.until,
@@ -148,7 +149,12 @@ impl Contender {
                 failure: Mutex::new(None),
             })));
         }
-        match driver.extract::<String>()?.as_str() {
+        Self::named(&driver.extract::<String>()?)
+    }
+
+    /// The driver of a name that needs no file.
+    fn named(name: &str) -> PyResult<Self> {
+        match name {
             "cede" => Policy::embedded().map(Self::Cede),
             known => known.parse().map(Self::Baseline).map_err(error),
         }

@@ -35,6 +35,7 @@ fn _cede(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<decision::Room>()?;
     module.add_class::<decision::Fault>()?;
     module.add_class::<decision::Prediction>()?;
+    module.add_class::<decision::Estimate>()?;
     module.add_class::<dataset::Dataset>()?;
     module.add_class::<batch::Batch>()?;
     module.add_class::<evaluate::Seen>()?;

@@ -2,7 +2,7 @@
 
 use crate::error::{error, named};
 use cede_controller::policy::embedded;
-use cede_controller::{FeatureSet, Perspective, Policy as Network};
+use cede_controller::{FeatureSet, Orientation, OrientationError, Perspective, Policy as Network};
 use cede_formats::cede;
 use cede_formats::onnx::{self, Told};
 use pyo3::prelude::*;
@@ -48,6 +48,19 @@ impl Policy {
                 .transpose()?,
         };
         imported(&path, told).map(Self)
+    }
+
+    /// The same network, showing a social value orientation (degrees): 0 an egoist, 45 as learned, 90 an altruist.
+    pub(crate) fn oriented(&self, svo: f32) -> PyResult<Self> {
+        let wrong = |what: OrientationError| error(format!("svo = {svo}: {what}"));
+        let orientation = Orientation::from_degrees(svo).map_err(wrong)?;
+        self.0.oriented(orientation).map(Self).map_err(wrong)
+    }
+
+    /// The orientation that it shows (degrees).
+    #[getter]
+    fn svo(&self) -> f32 {
+        self.0.orientation().radians().to_degrees()
     }
 
     #[getter]

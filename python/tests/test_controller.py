@@ -173,6 +173,34 @@ def test_the_embedded_policy_and_its_replacement():
     assert approach.contract.precedence is not None
 
 
+def test_a_policy_shows_another_orientation():
+    policy = cede.Policy.embedded()
+    assert policy.svo == 45
+    junction, left, oncoming = crossing()
+    ego = junction.vehicle(left, 15.0, 5.0)
+    car = [cede.Track(7, oncoming, junction.vehicle(oncoming, 20.0, 6.0))]
+
+    def proposal(svo):
+        return cede.Drive(policy, svo=svo).enter(junction, left).proposal(ego, car)
+
+    assert proposal(75) <= proposal(45) <= proposal(15)
+    assert proposal(45) == proposal(None)
+    with pytest.raises(cede.Error, match="svo = 91: an orientation is between 0 and 90"):
+        policy.oriented(91)
+
+
+def test_the_orientation_of_the_other_is_estimated_if_it_is_wanted():
+    junction, left, oncoming = crossing()
+    for wanted in (False, True):
+        approach = cede.Drive(estimates=wanted).enter(junction, left)
+        for step in range(5):
+            ego = junction.vehicle(left, 10.0 + 0.5 * step, 5.0)
+            car = [cede.Track(7, oncoming, junction.vehicle(oncoming, 10.0 + 0.6 * step, 6.0))]
+            prediction = approach.decide(0.1 * step, ego, car).prediction
+        assert (prediction.shown is not None) == wanted
+    assert 0 <= prediction.shown.svo <= 1.58 and 0 <= prediction.shown.confidence <= 1
+
+
 def test_headroom_says_how_near_the_contract_is_to_its_limits():
     junction, left, oncoming = crossing()
     shield = cede.Shield(junction, left)

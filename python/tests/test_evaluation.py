@@ -30,6 +30,20 @@ def test_a_function_drives():
     assert view.observation[1] == np.float32(view.speed) * np.float32(0.1)
 
 
+def test_an_altruist_goes_first_less_often_than_an_egoist():
+    policy = cede.Policy.embedded()
+    table = cede.evaluate(
+        [policy.oriented(75), policy.oriented(15)],
+        encounters=60,
+        split="all",
+        mode="ego",
+        until="cleared",
+        partner="cede",
+    )
+    assert list(table.driver) == ["policy 75°", "policy 15°"]
+    assert table.went_first[0] < table.went_first[1]
+
+
 def test_a_function_behind_the_shield_does_not_collide():
     def blind(view):
         return 3.0

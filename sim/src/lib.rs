@@ -13,6 +13,7 @@ pub mod judge;
 pub mod meeting;
 pub mod metrics;
 pub mod observation_model;
+pub mod orientations;
 pub mod reward;
 pub mod statistics;
 pub mod stepper;

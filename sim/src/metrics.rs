@@ -45,6 +45,12 @@ pub struct Measures {
     pub jerk: Option<f64>,
     /// Share of steps in which the shield overruled the driver.
     pub shielded: f64,
+    /// Whether the vehicle under test arrived before the other; `None` if both are under test.
+    pub went_first: Option<bool>,
+    /// Seconds by which the vehicle under test arrived later than it was recorded to. One that had not arrived by the
+    /// time-out has at least the delay until then, and that is counted. `None` if both are under test, and where the
+    /// episode ended otherwise before it arrived.
+    pub delay_s: Option<f64>,
 }
 
 impl Measures {
@@ -72,8 +78,29 @@ impl Measures {
                 .map(|(_, seconds)| seconds),
             jerk: jerk(episode, tested),
             shielded: shielded(episode, tested),
+            went_first: alone(tested).map(|role| episode.first() == Some(role)),
+            delay_s: alone(tested).and_then(|role| delay(encounter, episode, role)),
         }
     }
+}
+
+/// The vehicle under test, if it is one.
+fn alone(tested: &[Role]) -> Option<Role> {
+    match tested {
+        &[role] => Some(role),
+        _ => None,
+    }
+}
+
+fn delay(encounter: &Encounter, episode: &Episode, role: Role) -> Option<f64> {
+    let end = (episode.end == End::TimeOut).then(|| episode.steps() as f32);
+    let arrival = episode.arrivals[role as usize].or(end)?;
+    let second = if role == encounter.first {
+        0.0
+    } else {
+        f64::from(encounter.pet)
+    };
+    Some(f64::from(STEP) * (f64::from(arrival) - f64::from(encounter.steps)) - second)
 }
 
 fn pet_error(encounter: &Encounter, episode: &Episode) -> Option<f64> {
@@ -176,6 +203,40 @@ mod tests {
         assert_eq!(of(&[Role::Left]).shielded, 1.0);
         assert_eq!(of(&[Role::Other]).jerk, Some(0.0));
         assert_eq!(of(&Role::BOTH).shielded, 0.5);
+    }
+
+    #[test]
+    fn who_went_first_and_how_late_is_told_of_one_vehicle_under_test() {
+        // The left-turner is recorded to arrive after 2.5 s, the other 3 s later.
+        let encounter = crossing([20.0, 8.0], [44.0, 8.0]);
+        let meeting = Meeting::new(&encounter).unwrap();
+        let replays = || [0, 1].map(|i| Replay.driver(&meeting, i, 0));
+        let exits = Some(crate::evaluate::clearance(&meeting));
+        let of = |mut drivers: [Box<dyn Driver + '_>; 2], tested: &[Role]| {
+            let episode = Episode::run(&encounter, &mut drivers, exits);
+            let measures = Measures::of(&encounter, &episode, tested);
+            (measures.went_first, measures.delay_s)
+        };
+        assert_eq!(of(replays(), &Role::BOTH), (None, None));
+        for (role, first) in [(Role::Left, true), (Role::Other, false)] {
+            let (went_first, delay) = of(replays(), &[role]);
+            assert_eq!(went_first, Some(first));
+            assert!(delay.unwrap().abs() < 0.11, "{delay:?}");
+        }
+        let [left, _] = replays();
+        let standing: [Box<dyn Driver>; 2] = [left, Box::new(Brake)];
+        let (went_first, delay) = of(standing, &[Role::Other]);
+        assert_eq!(went_first, Some(false));
+        assert!(delay.unwrap() > 1.0, "{delay:?}");
+    }
+
+    /// Brakes as hard as it can.
+    struct Brake;
+
+    impl Driver for Brake {
+        fn accelerate(&mut self, _: &View<'_>) -> f32 {
+            -3.0
+        }
     }
 
     #[test]

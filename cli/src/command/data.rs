@@ -3,6 +3,7 @@
 mod extract;
 mod inspect;
 mod new_site;
+mod svo;
 mod synthesize;
 
 use crate::failure::Failure;
@@ -18,6 +19,8 @@ pub(crate) enum Data {
     Inspect(inspect::Args),
     /// Draft a scene description of a site that has none
     NewSite(new_site::Args),
+    /// Measure people's social value orientation (SVO): its distribution, and what it tells
+    Svo(svo::Args),
     /// Write synthetic recordings, maps and scene descriptions
     Synthesize(synthesize::Args),
 }
@@ -29,6 +32,7 @@ impl Data {
             Self::Extract(args) => extract::run(args),
             Self::Inspect(args) => inspect::run(args),
             Self::NewSite(args) => new_site::run(args),
+            Self::Svo(args) => svo::run(args),
             Self::Synthesize(args) => synthesize::run(args),
         }
     }

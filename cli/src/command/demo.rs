@@ -1,6 +1,6 @@
 //! `cede` without a command: drives the embedded scenarios, prints the table and writes the report.
 
-use crate::drivers::Drivers;
+use crate::drivers::{Contender, Drivers};
 use crate::failure::Failure;
 use crate::judge::{ModeName, Plan, UntilName};
 use crate::report::Report;
@@ -30,11 +30,11 @@ pub(crate) fn run() -> Result<(), Failure> {
     let mut rows = Vec::new();
     for until in [UntilName::Conflict, UntilName::Cleared] {
         let plan = Plan {
-            contenders: Drivers::all().contenders(None)?,
+            contenders: Drivers::all().contenders(None, &[])?,
             lenient: true,
             selections: vec![Selection::Split(Split::Test)],
             mode: ModeName::Joint,
-            partner: Baseline::Replay,
+            partner: Contender::Baseline(Baseline::Replay),
             until,
             shields: vec![None, Some(Contract::ALL_WAY_STOP)],
             seed: SEED,

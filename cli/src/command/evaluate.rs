@@ -3,7 +3,7 @@
 mod episodes;
 
 use crate::contract::{self, Named};
-use crate::drivers::Drivers;
+use crate::drivers::{Degrees, Drivers, Name};
 use crate::failure::Failure;
 use crate::judge::{ModeName, Plan, ShieldName, UntilName};
 use crate::report::{Report, command};
@@ -32,9 +32,9 @@ pub(crate) struct Args {
     /// Which vehicles are under test
     #[arg(long, value_enum, default_value_t = ModeName::Joint)]
     mode: ModeName,
-    /// In ego mode, the driver of the other vehicle [default: replay]
+    /// In ego mode, the driver of the other vehicle, which has no shield [default: replay]
     #[arg(long, value_name = "NAME")]
-    partner: Option<Baseline>,
+    partner: Option<Name>,
     /// When an episode ends
     #[arg(long, value_enum, default_value_t = UntilName::Conflict)]
     until: UntilName,
@@ -47,6 +47,9 @@ pub(crate) struct Args {
     /// The policy of the driver `cede`
     #[arg(long, value_name = "FILE.cede")]
     weights: Option<PathBuf>,
+    /// Social value orientations that the driver `cede` shows, one row each: 0 an egoist, 45 as learned, 90 an altruist
+    #[arg(long, value_delimiter = ',', value_name = "DEGREES[,DEGREES…]")]
+    svo: Vec<Degrees>,
     /// Seed of every random choice
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -118,12 +121,14 @@ impl Args {
                 selections.push(selection);
             }
         }
+        let weights = self.weights.as_deref();
+        let partner = self.partner.unwrap_or(Name::Baseline(Baseline::Replay));
         Ok(Plan {
-            contenders: self.driver.contenders(self.weights.as_deref())?,
+            contenders: self.driver.contenders(weights, &self.svo)?,
             lenient: self.driver.lenient,
             selections,
             mode: self.mode,
-            partner: self.partner.unwrap_or(Baseline::Replay),
+            partner: partner.contender(weights)?,
             until: self.until,
             shields: self.shield.shields(self.contract.as_ref())?,
             seed: self.seed,

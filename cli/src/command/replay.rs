@@ -3,7 +3,7 @@
 mod numbers;
 
 use crate::contract::Named;
-use crate::drivers::{Contender, Drivers};
+use crate::drivers::{Contender, Degrees, Drivers};
 use crate::failure::Failure;
 use crate::judge::ShieldName;
 use crate::left_out;
@@ -39,6 +39,9 @@ pub(crate) struct Args {
     /// The policy of the driver `cede`
     #[arg(long, value_name = "FILE.cede")]
     weights: Option<PathBuf>,
+    /// Social value orientations that the driver `cede` shows, one replay each: 0 an egoist, 45 as learned, 90 an altruist
+    #[arg(long, value_delimiter = ',', value_name = "DEGREES[,DEGREES…]")]
+    svo: Vec<Degrees>,
     /// Path of the page (HTML)
     #[arg(long, default_value = "out/replay.html", value_name = "FILE")]
     out: PathBuf,
@@ -82,7 +85,7 @@ impl FromStr for TrackPair {
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let shields = args.shield.shields(args.contract.as_ref())?;
-    let contenders = args.driver.contenders(args.weights.as_deref())?;
+    let contenders = args.driver.contenders(args.weights.as_deref(), &args.svo)?;
     let dataset = Dataset::load(&args.file, &args.site)?;
     let encounter = args.choose(&dataset)?;
     if !args.json {

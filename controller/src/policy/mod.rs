@@ -3,18 +3,22 @@
 #[cfg(feature = "embedded-policy")]
 pub mod embedded;
 mod error;
+pub mod estimate;
 pub mod features;
 pub mod fixed;
 pub mod mlp;
+pub mod orientation;
 pub(crate) mod pair;
 pub mod svo;
 pub(crate) mod traffic;
 pub mod weights;
 
 pub use error::WeightsError;
+pub use estimate::{Estimate, OrientationFilter};
 pub use features::FeatureSet;
 pub use fixed::FixedMlp;
 pub use mlp::Mlp;
+pub use orientation::{Orientation, OrientationError};
 pub use pair::{Crosser, Leader, Pair, Part, VehicleState};
 pub use traffic::{NearbyVehicle, TrafficContext};
 pub use weights::{Network, Perspective, Weights};
@@ -44,6 +48,7 @@ pub fn acceleration_slope(acceleration: f32) -> f32 {
 #[derive(Clone, Copy, Debug)]
 pub struct Policy<'a> {
     weights: Weights<'a>,
+    orientation: Orientation,
 }
 
 impl<'a> Policy<'a> {
@@ -63,12 +68,57 @@ impl<'a> Policy<'a> {
         &self.weights
     }
 
+    /// The same network, showing `orientation`.
+    ///
+    /// # Errors
+    /// It is another than [`Orientation::LEARNED`], and the network sees coordinates or commands both vehicles.
+    pub fn oriented(self, orientation: Orientation) -> Result<Self, OrientationError> {
+        match self.without_dial() {
+            Some(error) if orientation != Orientation::LEARNED => Err(error),
+            _ => Ok(Self {
+                orientation,
+                ..self
+            }),
+        }
+    }
+
+    /// Why it can show no other orientation than it learned, if it cannot.
+    fn without_dial(&self) -> Option<OrientationError> {
+        if self.weights.features() == FeatureSet::Raw {
+            return Some(OrientationError::Raw);
+        }
+        (self.weights.perspective() == Perspective::Joint).then_some(OrientationError::Joint)
+    }
+
+    /// The orientation that it shows.
+    #[must_use]
+    pub const fn orientation(&self) -> Orientation {
+        self.orientation
+    }
+
     /// What the policy proposes for the ego, and what it expects of the other, in m/s² within ± 3.
     ///
-    /// Cost: the features, one pass through the network, two `tanh`. Finite and within
-    /// ± 3 for any `pair` whatsoever.
+    /// What it expects of the other does not depend on its orientation. In any state an altruist proposes no more, and an
+    /// egoist no less, than [`Orientation::LEARNED`].
+    ///
+    /// Cost: the features, one pass through the network, two `tanh`; twice that with another orientation. Finite and
+    /// within ± 3 for any `pair` whatsoever.
     #[must_use]
     pub fn act(&self, pair: &Pair) -> [f32; 2] {
+        let [plain, expected] = self.answer(pair);
+        [self.shown(self.orientation, pair, plain), expected]
+    }
+
+    /// What it proposes with `orientation`, where it proposes `plain` as it learned (m/s²).
+    fn shown(&self, orientation: Orientation, pair: &Pair, plain: f32) -> f32 {
+        orientation.weigh(pair).map_or(plain, |weighed| {
+            let [asked, _] = self.answer(&weighed);
+            orientation.choose(asked, plain)
+        })
+    }
+
+    /// What the network says of `pair`, as it is shown.
+    fn answer(&self, pair: &Pair) -> [f32; 2] {
         let inputs = self.inputs(pair);
         let inputs = inputs.get(..self.weights.features().count()).unwrap_or(&[]);
         let [first, second, ..] = self.weights.network().forward(inputs);
@@ -107,7 +157,10 @@ impl<'a> Policy<'a> {
 
 impl<'a> From<Weights<'a>> for Policy<'a> {
     fn from(weights: Weights<'a>) -> Self {
-        Self { weights }
+        Self {
+            weights,
+            orientation: Orientation::LEARNED,
+        }
     }
 }
 
@@ -140,6 +193,30 @@ mod tests {
         let ego = Policy::new(&ego).unwrap();
         assert_eq!(ego.inputs(&pair())[1], (6.0 - 1.0) * 0.1);
         assert_eq!(ego.inputs(&pair().swapped())[1], (8.0 - 1.0) * 0.1);
+    }
+
+    #[test]
+    fn only_a_policy_that_drives_one_vehicle_by_distances_shows_an_orientation() {
+        let altruist = Orientation::from_degrees(70.0).unwrap();
+        for (features, perspective, refused) in [
+            (
+                FeatureSet::Raw,
+                Perspective::Ego,
+                Some(OrientationError::Raw),
+            ),
+            (
+                FeatureSet::Route,
+                Perspective::Joint,
+                Some(OrientationError::Joint),
+            ),
+            (FeatureSet::Route, Perspective::Ego, None),
+        ] {
+            let file = file(features, perspective, 16);
+            let policy = Policy::new(&file).unwrap();
+            assert_eq!(policy.oriented(altruist).err(), refused);
+            let neutral = policy.oriented(Orientation::LEARNED).unwrap();
+            assert_eq!(neutral.act(&pair()), policy.act(&pair()));
+        }
     }
 
     prop_compose! {
@@ -176,6 +253,25 @@ mod tests {
                 for a in Policy::new(&file).unwrap().act(&pair) {
                     prop_assert!(a.abs() <= MAX_ACCELERATION, "{a}");
                 }
+            }
+        }
+
+        #[test]
+        fn an_altruist_never_proposes_more_and_an_egoist_never_less(
+            ego in (0.0_f32..60.0, 0.0_f32..15.0), other in (-20.0_f32..80.0, 0.0_f32..15.0), degrees in 0.0_f32..90.0,
+        ) {
+            let mut pair = pair();
+            (pair.ego.distance, pair.ego.speed) = ego;
+            (pair.other.distance, pair.other.speed) = other;
+            let file = file(FeatureSet::Route, Perspective::Ego, 16);
+            let learned = Policy::new(&file).unwrap();
+            let shown = learned.oriented(Orientation::from_degrees(degrees).unwrap()).unwrap();
+            let ([plain, expected], [asked, same]) = (learned.act(&pair), shown.act(&pair));
+            prop_assert_eq!(expected, same);
+            if degrees > 45.0 {
+                prop_assert!(asked <= plain);
+            } else {
+                prop_assert!(asked >= plain);
             }
         }
     }

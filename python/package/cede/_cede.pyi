@@ -103,6 +103,14 @@ class Policy:
         perspective: str | None = None,
     ) -> Policy:
         """The policy of an ONNX file; `docs/formats.md` says which graphs."""
+    def oriented(self, svo: float) -> Policy:
+        """The same network, showing a social value orientation (degrees, 0 to 90).
+
+        0 is an egoist, 45 as it learned, 90 an altruist.
+        """
+    @property
+    def svo(self) -> float:
+        """The orientation that it shows (degrees)."""
     @property
     def features(self) -> str: ...
     @property
@@ -250,7 +258,14 @@ class Drive:
         contract: Contract | None = None,
         *,
         part: Literal["left", "other"] = "left",
-    ) -> Drive: ...
+        svo: float | None = None,
+        estimates: bool = False,
+    ) -> Drive:
+        """`svo` (degrees) is what the policy shows: see `Policy.oriented`.
+
+        `estimates`: whether the orientations of others are estimated (`Prediction.shown`).
+        """
+
     def enter(self, junction: Junction, path: int) -> Approach:
         """Begin to approach `junction` on `path`."""
 
@@ -408,6 +423,23 @@ class Prediction:
     @property
     def svo(self) -> float:
         """The ego's social value orientation towards it (rad), in [0, π/2]."""
+    @property
+    def acceleration(self) -> float:
+        """The acceleration (m/s²) that is expected of it."""
+    @property
+    def shown(self) -> Estimate | None:
+        """The orientation that it has shown, if estimates are wanted."""
+
+@final
+class Estimate:
+    """The social value orientation that an other has shown, by what it did."""
+
+    @property
+    def svo(self) -> float:
+        """Its orientation (rad): π/4 if nothing is known."""
+    @property
+    def confidence(self) -> float:
+        """From 0, nothing is known, to 1, no doubt is left."""
     @property
     def acceleration(self) -> float:
         """The acceleration (m/s²) that is expected of it."""

@@ -41,15 +41,16 @@ def evaluate(
     """The rows of the table, one a driver; with `episodes` also one row an episode.
 
     Args:
-        driver: A name of `DRIVERS`, a `.cede` or `.onnx` file, a `cede.Policy`, a function that
-            takes a `cede.View` and returns an acceleration (m/s²), or a list of these.
+        driver: A name of `DRIVERS`, a `.cede` or `.onnx` file, a `cede.Policy` (with the SVO that
+            `Policy.oriented` gives it), a function that takes a `cede.View` and returns an
+            acceleration (m/s²), or a list of these.
         data: As in `cede.data.open_dataset`.
         site: Site of the recordings.
         split: `"train"`, `"validation"`, `"test"`, `"all"`, `"leave-one-file-out"` or
             `"seven-fold"`.
         mode: `"joint"` drives both vehicles, `"ego"` one of them in either role.
         until: `"conflict"`, the paper's protocol, or `"cleared"`.
-        partner: In ego mode, the driver of the other vehicle.
+        partner: In ego mode, the driver of the other vehicle: a name of `DRIVERS`.
         shield: `False`, `True` (the worst case), the name of a contract, or a contract.
         encounters: Number of synthetic encounters, at least.
         seed: Seed of every random choice.
@@ -85,7 +86,8 @@ def contract_of(shield: bool | str | Contract) -> Contract | None:
 def known(driver: Driver, features: str | None) -> tuple[str, Any]:
     """The name of a driver in the table, and what Rust takes for it."""
     if isinstance(driver, Policy):
-        return "policy", driver
+        shown = "" if driver.svo == 45 else f" {driver.svo:g}°"
+        return f"policy{shown}", driver
     if callable(driver):
         return getattr(driver, "__name__", type(driver).__name__), driver
     name = os.fspath(driver)

@@ -74,6 +74,16 @@ pub struct TableRow {
     pub jerk_rms: Option<f64>,
     /// Share of steps in which the shield overruled the driver, mean over episodes.
     pub shielded_steps: Option<f64>,
+    /// Share of episodes in which the vehicle under test arrived before the other; `None` in joint mode.
+    pub went_first: Option<f64>,
+    /// Its Wilson interval.
+    pub went_first_interval: Option<ConfidenceInterval>,
+    /// Its bootstrap interval, resampled by recording files; `None` for one file.
+    pub went_first_interval_by_file: Option<ConfidenceInterval>,
+    /// Mean delay of the vehicle under test beside its record in seconds, at least: see [`Measures::delay_s`].
+    pub delay_s: Option<f64>,
+    /// Its bootstrap interval, resampled by recording files; `None` for one file.
+    pub delay_s_interval_by_file: Option<ConfidenceInterval>,
 }
 
 /// The words that name a row.
@@ -102,6 +112,7 @@ impl TableRow {
         let priority = Share::of(measures().map(|m| m.correct));
         let (collisions, time_outs) = (ended(End::Collision), ended(End::TimeOut));
         let length = Mean::of(measures().map(|m| m.length_error));
+        let first = Share::of(measures().filter_map(|m| m.went_first));
         let position = |i: usize| rms(measures().filter_map(|m| m.position_error[i]));
         let encounters: BTreeSet<&EncounterId> =
             drives.iter().map(|drive| &drive.encounter.id).collect();
@@ -116,13 +127,15 @@ impl TableRow {
             encounters: encounters.len(),
             priority_accuracy: priority.fraction(),
             priority_accuracy_interval: priority.interval(),
-            priority_accuracy_interval_by_file: by_file(drives, |m| f64::from(u8::from(m.correct))),
+            priority_accuracy_interval_by_file: by_file(drives, |m| {
+                Some(f64::from(u8::from(m.correct)))
+            }),
             episode_length_error: length.map(|mean| mean.mean),
             // An error is never negative, whatever the normal approximation says.
             episode_length_error_interval: length
                 .and_then(Mean::interval)
                 .map(|interval| interval.map(|bound| bound.max(0.0))),
-            episode_length_error_interval_by_file: by_file(drives, |m| m.length_error),
+            episode_length_error_interval_by_file: by_file(drives, |m| Some(m.length_error)),
             episode_length_error_s: mean(measures().map(|m| m.length_error_s)),
             collisions: collisions.count,
             collision_share_interval: collisions.interval(),
@@ -140,6 +153,13 @@ impl TableRow {
             .fraction(),
             jerk_rms: rms(measures().filter_map(|m| m.jerk)),
             shielded_steps: mean(measures().map(|m| m.shielded)),
+            went_first: first.fraction(),
+            went_first_interval: first.interval(),
+            went_first_interval_by_file: by_file(drives, |m| {
+                m.went_first.map(|first| f64::from(u8::from(first)))
+            }),
+            delay_s: mean(measures().filter_map(|m| m.delay_s)),
+            delay_s_interval_by_file: by_file(drives, |m| m.delay_s),
         }
     }
 }
@@ -148,12 +168,15 @@ impl TableRow {
 const _: () = assert!(matches!(HORIZONS, [1, 3, 5]));
 
 /// The interval of the mean of a measure, resampled by recording files.
-fn by_file(drives: &[Drive<'_>], measure: impl Fn(&Measures) -> f64) -> Option<ConfidenceInterval> {
+fn by_file(
+    drives: &[Drive<'_>],
+    measure: impl Fn(&Measures) -> Option<f64>,
+) -> Option<ConfidenceInterval> {
     let file = |drive: &Drive<'_>| (drive.encounter.id.site.clone(), drive.encounter.id.file);
     mean_by_group(
         drives
             .iter()
-            .map(|drive| (file(drive), measure(&drive.measures))),
+            .filter_map(|drive| Some((file(drive), measure(&drive.measures)?))),
     )
 }
 

@@ -8,7 +8,7 @@ use cede_controller::policy::MAX_ACCELERATION;
 use cede_data::Encounter;
 use cede_sim::ObservationModel;
 use cede_sim::reward::{COLLISION, EpisodeLength, PAST_THE_RECORD, svo_deviation};
-use cede_sim::stepper::Stepper;
+use cede_sim::stepper::{End, Stepper};
 use serde::{Deserialize, Serialize};
 
 /// What a policy is rewarded for.
@@ -125,17 +125,17 @@ impl Episode {
         if stepped.touching() {
             earned += COLLISION;
         }
-        let done = stepped.end().is_some();
+        let end = stepped.end();
         let transition = Transition {
             observation: std::mem::replace(&mut self.observation, next.clone()),
             action: actions.to_vec(),
             reward: earned,
             next,
-            done,
+            terminal: end.is_some_and(|end| end != End::TimeOut),
         };
         let speeds = self.states[0].v + self.states[1].v;
         self.steps.push((transition, speeds));
-        done.then(|| self.replayed(encounter, reward))
+        end.map(|_| self.replayed(encounter, reward))
     }
 
     /// r₁: how far the last step has left the record, in [0, 1].
@@ -223,8 +223,8 @@ mod tests {
                 let steps = replay(course, &courses, &inputs, reward);
                 let mean = steps.iter().map(|t| t.reward).sum::<f32>() / steps.len() as f32;
                 assert!(mean > -0.3, "{reward:?} {course}: {mean}");
-                assert!(steps.last().is_some_and(|t| t.done));
-                assert_eq!(steps.iter().filter(|t| t.done).count(), 1);
+                assert!(steps.last().is_some_and(|t| t.terminal));
+                assert_eq!(steps.iter().filter(|t| t.terminal).count(), 1);
             }
         }
     }
@@ -246,6 +246,26 @@ mod tests {
             let (first, last) = (steps[0].reward, steps[steps.len() - 1].reward);
             assert!(last < -1.4, "{last}");
             assert_eq!(first < -1.4, early, "{reward:?}: {first}");
+        }
+    }
+
+    #[test]
+    fn a_time_out_is_a_truncation_and_an_arrival_is_terminal() {
+        let dataset = Dataset::synthetic(5, 2);
+        let courses: Vec<Course<'_>> = dataset.encounters.iter().take(1).map(Course::new).collect();
+        let pairs: Vec<Pair> = courses[0].model.recorded().collect();
+        let inputs = Inputs::fit(FeatureSet::Raw, &pairs);
+        for (action, terminal) in [(-1.0, false), (1.0, true)] {
+            let mut episode = Episode::begin(0, &courses, &inputs);
+            let steps = loop {
+                let actions = [action, -1.0];
+                if let Some(steps) = episode.step(actions, &courses, &inputs, Reward::SacerSvo) {
+                    break steps;
+                }
+            };
+            let (last, before) = steps.split_last().unwrap();
+            assert_eq!(last.terminal, terminal);
+            assert!(before.iter().all(|transition| !transition.terminal));
         }
     }
 }

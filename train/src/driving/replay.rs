@@ -15,8 +15,9 @@ pub struct Transition {
     pub reward: f32,
     /// Features after the step.
     pub next: Vec<f32>,
-    /// Whether the episode ended with the step.
-    pub done: bool,
+    /// Whether the episode ended with the step, so that nothing more is to be earned. A time-out only cuts it
+    /// off: what would have come after it still counts.
+    pub terminal: bool,
 }
 
 /// A batch of transitions; each field has one row per sample.
@@ -30,7 +31,7 @@ pub struct Batch {
     pub rewards: Vec<f32>,
     /// Features after the steps.
     pub next: Vec<f32>,
-    /// 0 where the episode ended, else 1.
+    /// 0 where the step was [terminal](Transition::terminal), else 1.
     pub continues: Vec<f32>,
 }
 
@@ -88,7 +89,7 @@ impl Replay {
         if start == self.rows.len() {
             self.rows.resize(start + stride, 0.0);
         }
-        let continues = if transition.done { 0.0 } else { 1.0 };
+        let continues = if transition.terminal { 0.0 } else { 1.0 };
         let values = transition
             .observation
             .iter()
@@ -161,7 +162,7 @@ mod tests {
             action: vec![0.5 * x],
             reward: 10.0 * x,
             next: vec![x + 1.0, -x - 1.0],
-            done: i % 2 == 1,
+            terminal: i % 2 == 1,
         }
     }
 
@@ -181,7 +182,7 @@ mod tests {
             assert_eq!(batch.next[2 * k..2 * k + 2], expected.next);
             assert_eq!(batch.actions[k], expected.action[0]);
             assert_eq!(batch.rewards[k], expected.reward);
-            assert_eq!(batch.continues[k] == 0.0, expected.done);
+            assert_eq!(batch.continues[k] == 0.0, expected.terminal);
         }
         assert_eq!(seen, [false, false, true, true, true]);
     }

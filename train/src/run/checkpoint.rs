@@ -25,7 +25,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Version of the format that this program writes and reads.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 const MAGIC: &[u8; 8] = b"CEDECKPT";
 static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
@@ -233,7 +233,7 @@ mod tests {
         let path = folder.path().join("run.checkpoint");
         std::fs::write(&path, bytes).unwrap();
         let error = Checkpoint::load(&path).unwrap_err().to_string();
-        for part in ["run.checkpoint", "format version 7", "reads version 2"] {
+        for part in ["run.checkpoint", "format version 7", "reads version 3"] {
             assert!(error.contains(part), "{error}");
         }
     }
@@ -242,7 +242,7 @@ mod tests {
     fn the_file_begins_as_documented() {
         let bytes = checkpoint().encode().unwrap();
         assert_eq!(bytes[..8], *b"CEDECKPT");
-        assert_eq!(bytes[8..12], [2, 0, 0, 0]);
+        assert_eq!(bytes[8..12], [3, 0, 0, 0]);
         assert_eq!(bytes[12..44], [3; 32]);
         assert_eq!(bytes[44..47], [0, 1, 0], "algorithm, seed, no settings");
     }
@@ -257,7 +257,7 @@ mod tests {
             let run = Run::new(small(algorithm), &lessons, 1);
             taken_from(&run, algorithm).encode().unwrap().len()
         });
-        assert_eq!((VERSION, lengths), (2, [9252, 35977, 11871]));
+        assert_eq!((VERSION, lengths), (3, [9252, 35977, 11871]));
     }
 
     #[test]

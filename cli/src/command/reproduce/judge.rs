@@ -121,7 +121,7 @@ pub(super) fn baselines(dataset: &Dataset, held_out: Option<Selection>) -> Plan 
         lenient: true,
         selections: splits.chain(held_out).collect(),
         mode: ModeName::Joint,
-        partner: Baseline::Replay,
+        partner: Contender::Baseline(Baseline::Replay),
         until: UntilName::Conflict,
         shields: vec![None],
         seed: 0,

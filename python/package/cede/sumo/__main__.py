@@ -40,7 +40,7 @@ def _run(args: argparse.Namespace) -> dict[str, float | int | None]:
         gui=args.gui,
         stops=args.stops == "on",
         intent=args.intent,
-        policy=Policy.load(args.weights) if args.weights else None,
+        policy=_policy(args),
     )
     settings.check()
     bridge = Bridge(
@@ -51,6 +51,13 @@ def _run(args: argparse.Namespace) -> dict[str, float | int | None]:
         pedestrians=args.pedestrians,
     )
     return bridge.run().summary()
+
+
+def _policy(args: argparse.Namespace) -> Policy | None:
+    if args.svo is not None and args.driver != "cede":
+        raise Error(f"--svo has no effect with --driver {args.driver}")
+    policy = Policy.load(args.weights) if args.weights else None
+    return policy if args.svo is None else (policy or Policy.embedded()).oriented(args.svo)
 
 
 def _contract(name: str | None) -> Contract | None:
@@ -85,6 +92,13 @@ def _parser() -> argparse.ArgumentParser:
     option("--ego", type=int, metavar="N", help="drive at most N vehicles")
     option("--driver", choices=DRIVERS, default="cede")
     option("--weights", metavar="FILE.cede", help="the policy of the driver cede")
+    option(
+        "--svo",
+        type=float,
+        metavar="DEGREES",
+        help="social value orientation that the driver cede shows: 0 an egoist, 45 as learned, "
+        "90 an altruist",
+    )
     option(
         "--contract",
         metavar="NAME|FILE.toml",

@@ -147,7 +147,7 @@ mod tests {
                 action: vec![action],
                 reward: 1.0 - (action - state) * (action - state),
                 next: vec![next],
-                done: false,
+                terminal: false,
             });
             state = next;
             if step > 100 {
