@@ -3,13 +3,14 @@
 use super::actuation::Inherited;
 use super::choice::{allowed, most};
 use super::contract::Contract;
-use super::hazard::Passage;
+use super::hazard::{Hazard, Passage};
 use super::hazards::Hazards;
+use super::margin;
 use super::own::Own;
 use super::rules::Rules;
 use super::tracks::Tracks;
 use super::unwatched::Closed;
-use super::verified::{Verified, best};
+use super::verified::{Verified, best, passage_margin};
 use crate::junction::Way;
 
 /// An ego without a safe plan that is less than this (m) in a zone stays there.
@@ -53,7 +54,7 @@ impl<'s> Scene<'s> {
     }
 
     /// Whether an ego without a safe plan accelerates out of its zones instead of braking: it stands in zones, none
-    /// of the others may be in its own, and nobody stands in the way until the ego would be at rest again.
+    /// of the others may be in these, and it passes each zone ahead in time or stops before it.
     pub(super) fn leaves<R: Rules>(&self, contract: &Contract) -> bool {
         let go = allowed(&contract.ego, self.most, contract.ego.go);
         let departure = R::departure(contract, self.ego.speed, self.inherited, go);
@@ -64,13 +65,19 @@ impl<'s> Scene<'s> {
             Passage::Ahead { gap, .. } => gap > 0.0,
             Passage::Never => false,
         };
-        let inside = |limit: f32| limit < -NOSE;
-        let stands_in_one = self.hazards.iter().any(|hazard| inside(hazard.limit));
-        stands_in_one
+        let passes = |hazard: &Hazard| {
+            let (clears, speed) = margin::clearing(contract, departure.least, hazard.target);
+            passage_margin::<R>(contract, hazard, clears, speed) >= 0.0
+        };
+        let inside = |hazard: &Hazard| hazard.limit < -NOSE;
+        let short = |hazard: &Hazard| R::stops_short(contract, hazard.limit, rest) >= 0.0;
+        self.hazards.iter().any(inside)
             && self.hazards.iter().all(|hazard| {
-                let free = outside(hazard.passage);
-                let short = R::stops_short(contract, hazard.limit, rest) >= 0.0;
-                free || (!inside(hazard.limit) && short)
+                if inside(hazard) {
+                    outside(hazard.passage)
+                } else {
+                    short(hazard) || passes(hazard)
+                }
             })
     }
 }

@@ -456,3 +456,33 @@ fn without_a_plan_the_ego_brakes_with_all_there_is() {
     let planned = run.decide([36.0, 10.0], &[(1, [58.0, 0.0])], -20.0);
     assert_eq!(planned.acceleration, -3.0, "{planned:?}");
 }
+
+/// An ego at rest in a zone that somebody comes to from far away, just before another zone: `near` is how far (m) the one
+/// there is from it. Without a plan, what does it do?
+fn stands_between(near: f32) -> Decision {
+    let beyond = route(&[(5.0, -60.0), (5.0, 60.0)]);
+    let site = site(&[east(), north(), beyond]);
+    let mut run = Run::new(&site, WORST);
+    let own = [zone(&site, 2).ego.from - 0.05, 0.0];
+    let before = run.decide(
+        own,
+        &[(2, [zone(&site, 2).other.from - near - 0.8, 8.0])],
+        -3.0,
+    );
+    assert!(before.plan.is_some());
+    let others = [
+        (1, [zone(&site, 1).other.from - 50.0, 8.0]),
+        (2, [zone(&site, 2).other.from - near, 8.0]),
+    ];
+    run.decide(own, &others, -3.0)
+}
+
+#[test]
+fn whoever_leaves_a_zone_without_a_plan_enters_no_other_before_somebody() {
+    let near = stands_between(8.0);
+    assert_eq!(near.cause, Cause::Fallback(Fault::NoPlan));
+    assert!(near.acceleration < 0.0, "{near}");
+    // It can still pass both.
+    let far = stands_between(50.0);
+    assert!(far.plan.is_some(), "{far}");
+}

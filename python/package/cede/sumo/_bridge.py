@@ -31,8 +31,8 @@ HEADWAY = 1.0
 """Seconds that a vehicle wishes to keep to its leader."""
 STANDSTILL = 2.5
 """Metres to the leader at rest, SUMO's `minGap`, which SUMO's gaps leave out."""
-LIVELY = 3.0
-"""Acceleration (m/s²) with nothing ahead."""
+LIVELY, FREE = 3.0, 14.0
+"""Acceleration (m/s²) from rest, and the speed (m/s) at which it ends, with nothing ahead."""
 SETTING_OFF = 4.0
 """Speed (m/s), at least, at which a vehicle is expected to cross a junction."""
 ROOM = 2.0
@@ -534,7 +534,7 @@ class Bridge:
         allowed = car.site.junction.allowed_acceleration(
             movement.driven, car.s, car.speed * car.rate, self.settings.step
         )
-        wanted = min(LIVELY, allowed)
+        wanted = min(LIVELY * (1.0 - (car.speed / FREE) ** 4), allowed)
         if not car.stopped:
             short = movement.line - car.s
             car.stopped = car.speed < STANDING and short < AT_LINE
