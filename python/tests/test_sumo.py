@@ -129,9 +129,9 @@ def test_the_profile_brings_light_traffic_through_an_all_way_stop(tmp_path):
 
 def is_through(net, driver, arrivals):
     """Nobody is hit or stuck, and so many arrive of those that arrive with SUMO's own drivers."""
-    summary = run(net, driver=driver, time=200.0, demand=200.0)
+    summary = run(net, driver=driver, time=300.0, demand=200.0)
     assert (summary["collisions"], summary["stuck"]) == (0, 0)
-    sumo = run(net, driver="sumo", time=200.0, demand=200.0)
+    sumo = run(net, driver="sumo", time=300.0, demand=200.0)
     assert summary["arrived"] >= arrivals * sumo["arrived"]
 
 

@@ -47,7 +47,7 @@ BEFORE_LINE, BEFORE_CROSSING = 0.3, 0.8
 BEFORE, BEYOND = 300.0, 100.0
 """Metres of the lanes before and beyond a junction that belong to its paths."""
 
-LATERAL = 2.5
+LATERAL = 2.6
 """Lateral acceleration (m/s²) that a curve's speed is chosen for."""
 
 SLACK = 0.5
