@@ -1,7 +1,9 @@
 //! Pages, opened in Chromium.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
 
 /// The browser; without one the test is skipped and says so.
 pub(crate) fn browser() -> Option<PathBuf> {
@@ -16,10 +18,13 @@ pub(crate) fn browser() -> Option<PathBuf> {
     found
 }
 
-/// The page's elements after its scripts have run.
+/// A browser that has not drawn a page by then never will: it is stopped.
+const LONGEST: Duration = Duration::from_secs(120);
+
+/// The page's elements after its scripts have run; nothing, if the browser hangs.
 pub(crate) fn open(browser: &Path, url: &str) -> String {
     let profile = tempfile::tempdir().unwrap();
-    let output = Command::new(browser)
+    let mut child = Command::new(browser)
         .args(["--headless", "--no-sandbox", "--disable-gpu"])
         .args([
             "--disable-background-networking",
@@ -27,7 +32,21 @@ pub(crate) fn open(browser: &Path, url: &str) -> String {
         ])
         .arg(format!("--user-data-dir={}", profile.path().display()))
         .args(["--window-size=1280,2400", "--dump-dom", url])
-        .output()
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
         .unwrap();
-    String::from_utf8(output.stdout).unwrap()
+    let mut out = child.stdout.take().unwrap();
+    let reader = std::thread::spawn(move || {
+        let mut text = String::new();
+        out.read_to_string(&mut text).map(|_| text)
+    });
+    let began = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if began.elapsed() > LONGEST {
+            child.kill().unwrap();
+        }
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    reader.join().unwrap().unwrap()
 }
