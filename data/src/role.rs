@@ -1,6 +1,6 @@
 //! Who is who in an encounter, and what each does there.
 
-/// Which of the two judged vehicles; `role as usize` is its index in [`Encounter::participants`].
+/// Which of the two judged vehicles; `role as usize` is its index in [`crate::Encounter::participants`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Role {
     /// The left-turner (in generic encounters: the vehicle that has to give way).
@@ -10,7 +10,7 @@ pub enum Role {
 }
 
 impl Role {
-    /// Both, in the order of [`Encounter::participants`].
+    /// Both, in the order of [`crate::Encounter::participants`].
     pub const BOTH: [Self; 2] = [Self::Left, Self::Other];
 }
 
