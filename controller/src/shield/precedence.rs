@@ -168,8 +168,8 @@ impl PairMemory {
         if R::ends(perhaps, surely, begins, patience) {
             self.turn = Turn::Past;
         }
-        // A rest that is unknown counts as `u16::MAX`: of the two, the known one counts. It is nobody's turn if neither is known,
-        // or if one is not and, without an order in turns, both are needed to tell who comes first.
+        // An unknown rest is `u16::MAX`, so that the smaller one is the known one. One known rest is enough if there is an
+        // order in turns. Without an order, who comes first is told from both.
         let counted = perhaps < u16::MAX
             && (right.in_turns != RightOfWay::Unsettled
                 || mine.perhaps < u16::MAX && theirs.perhaps < u16::MAX);
