@@ -96,8 +96,8 @@ macro_rules! mutants {
             struct $type;
             impl Rules for $type { $($rule)* }
         )*
-        /// All of them.
-        pub const ALL: &[Mutant] = &[$(Mutant {
+        /// All of them. A static, so that they are compiled once, with this crate.
+        pub static ALL: &[Mutant] = &[$(Mutant {
             name: $name,
             family: $family,
             campaign: |family, from, count| family.campaign::<$type>(from, count),
