@@ -80,6 +80,21 @@ impl FromStr for Degrees {
     }
 }
 
+impl Degrees {
+    /// The policy that shows this orientation.
+    ///
+    /// # Errors
+    /// `policy` cannot.
+    pub(crate) fn shown_by(self, policy: Policy<'static>) -> Result<Policy<'static>, Failure> {
+        policy.oriented(self.1).map_err(|error| {
+            Failure::input(
+                error,
+                "leave out --svo, or name another policy with --weights: `cede train apg` trains such",
+            )
+        })
+    }
+}
+
 impl Drivers {
     /// All drivers that can be fitted.
     pub(crate) fn all() -> Self {
@@ -180,15 +195,8 @@ impl Contender {
 
     /// Cede with another orientation.
     fn oriented(policy: Policy<'static>, degrees: Degrees) -> Result<Self, Failure> {
-        let Degrees(value, orientation) = degrees;
-        let name = format!("{} {value}°", Name::Cede.text());
-        let policy = policy.oriented(orientation).map_err(|error| {
-            Failure::input(
-                error,
-                "leave out --svo, or name another policy with --weights: `cede train apg` trains such",
-            )
-        })?;
-        Ok(Self::Cede(policy, name))
+        let name = format!("{} {}°", Name::Cede.text(), degrees.0);
+        Ok(Self::Cede(degrees.shown_by(policy)?, name))
     }
 
     /// Makes its drivers. Drivers that learn are fitted to `training`. With a `contract` there is a shield.

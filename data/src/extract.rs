@@ -73,10 +73,10 @@ struct ConflictTimes {
 }
 
 #[derive(Clone, Copy)]
-struct Arrival {
+pub(crate) struct Arrival {
     time_ms: u64,
     /// Index of the first state near the conflict point.
-    index: usize,
+    pub(crate) index: usize,
     /// Share of the last step before it after which the vehicle was near.
     share: f64,
 }
@@ -168,7 +168,7 @@ impl TrackPair<'_> {
 }
 
 /// Arc length (m) on the route of `participant` at which `track` crosses the line before state `index`.
-fn arc_length(
+pub(crate) fn arc_length(
     track: &Track,
     participant: &Participant,
     start_ms: u64,
@@ -183,7 +183,7 @@ fn arc_length(
     Some(-way.sum::<f64>() as f32)
 }
 
-fn arrival(track: &Track, path: &[Point], point: Point) -> Option<Arrival> {
+pub(crate) fn arrival(track: &Track, path: &[Point], point: Point) -> Option<Arrival> {
     let away = |p: &Point| (p[0] - point[0]).hypot(p[1] - point[1]);
     let index = path.iter().position(|p| away(p) < NEAR)?;
     let share = match index.checked_sub(1).and_then(|i| path.get(i)) {
@@ -220,7 +220,17 @@ fn judged(site: &Site, track: &Track, arrival: Arrival, start_ms: u64) -> Option
 }
 
 fn bystander(site: &Site, track: &Track, start_ms: u64) -> Option<Participant> {
-    let (route, record): (SimRoute, Vec<Sample>) = motion(track.states_from(start_ms)).ok()?;
+    let motion = motion(track.states_from(start_ms)).ok()?;
+    participant(site, track, start_ms, motion)
+}
+
+/// `track` from `start_ms` on, on its way.
+pub(crate) fn participant(
+    site: &Site,
+    track: &Track,
+    start_ms: u64,
+    (route, record): (SimRoute, Vec<Sample>),
+) -> Option<Participant> {
     Some(Participant {
         track: track.id,
         manoeuvre: site.manoeuvre(track),

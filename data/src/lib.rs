@@ -21,6 +21,7 @@ mod summary;
 pub mod synthetic;
 mod table;
 mod tracks;
+mod traffic;
 
 pub use draft::draft;
 pub use encounter::{Encounter, EncounterId, Participant, Sample, SimRoute};
@@ -31,6 +32,7 @@ pub use role::{Manoeuvre, Role};
 pub use site::{Files, Site};
 pub use summary::{Distribution, FileSummary, REST, RightsSummary, Summary};
 pub use tracks::{RawState, Recording, STEP_MS, Scene, Track};
+pub use traffic::Traffic;
 
 use lanelet::{ConflictArea, Map};
 use rayon::prelude::*;

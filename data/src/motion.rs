@@ -7,6 +7,8 @@ use cede_controller::{Point, RouteError};
 
 /// Positions closer (m) to the one before are dropped: a vehicle at rest jitters.
 const SPACING: f64 = 0.2;
+/// The same where a standing vehicle's jitter must not make kinks.
+const SMOOTH: f64 = 1.0;
 /// A route may cut its track's corners by this much (m).
 const TOLERANCE: f64 = 0.01;
 /// Length (m) of the route of a vehicle that never moves.
@@ -19,10 +21,33 @@ const PULL: f32 = 2.0;
 /// # Errors
 /// When a coordinate is out of a route's range; the readers let none through.
 pub(crate) fn motion(states: &[RawState]) -> Result<(SimRoute, Vec<Sample>), RouteError> {
-    let path = spaced(states);
+    along_path(&spaced(states, SPACING), states)
+}
+
+/// The same on a route without the jitter of a vehicle that stands: its points are a metre apart, each ahead of the one
+/// before.
+///
+/// # Errors
+/// See [`motion`].
+pub(crate) fn smooth_motion(states: &[RawState]) -> Result<(SimRoute, Vec<Sample>), RouteError> {
+    let mut path: Vec<Vertex> = Vec::new();
+    for vertex in spaced(states, SMOOTH) {
+        let ahead = path.last().is_none_or(|last| {
+            let [x, y] = [0, 1].map(|i| vertex.position[i] - last.position[i]);
+            let heading = states.get(vertex.index).map_or(0.0, |state| state.heading);
+            x * heading.cos() + y * heading.sin() > 0.5 * SMOOTH
+        });
+        if ahead {
+            path.push(vertex);
+        }
+    }
+    along_path(&path, states)
+}
+
+fn along_path(path: &[Vertex], states: &[RawState]) -> Result<(SimRoute, Vec<Sample>), RouteError> {
     let mut tolerance = TOLERANCE;
     loop {
-        let kept = simplified(&path, tolerance);
+        let kept = simplified(path, tolerance);
         match SimRoute::new(kept.iter().map(|vertex| single(vertex.position))) {
             Err(RouteError::TooManyPoints) => tolerance *= 2.0,
             Err(error) => return Err(error),
@@ -46,14 +71,14 @@ struct Vertex {
     position: [f64; 2],
 }
 
-/// The positions, at least [`SPACING`] apart; a parked vehicle's lead straight ahead.
-fn spaced(states: &[RawState]) -> Vec<Vertex> {
+/// The positions, at least `spacing` (m) apart; a parked vehicle's lead straight ahead.
+fn spaced(states: &[RawState], spacing: f64) -> Vec<Vertex> {
     let mut path: Vec<Vertex> = Vec::new();
     for (index, state) in states.iter().enumerate() {
         let position = state.position();
         if path
             .last()
-            .is_none_or(|last| distance(last.position, position) >= SPACING)
+            .is_none_or(|last| distance(last.position, position) >= spacing)
         {
             path.push(Vertex { index, position });
         }

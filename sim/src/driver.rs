@@ -8,7 +8,7 @@ mod baseline;
 mod constant;
 mod controller;
 mod human;
-mod idm;
+pub(crate) mod idm;
 mod logistic;
 mod nearer_first;
 mod policy_alone;

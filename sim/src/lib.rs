@@ -17,6 +17,7 @@ pub mod orientations;
 pub mod reward;
 pub mod statistics;
 pub mod stepper;
+pub mod traffic;
 pub mod transparency;
 
 pub use driver::{Driver, DriverFactory, View};

@@ -1,6 +1,7 @@
 //! `cede evaluate`: judges drivers on recorded or synthetic encounters and prints the table.
 
 mod episodes;
+mod traffic;
 
 use crate::contract::{self, Named};
 use crate::drivers::{Degrees, Drivers, Name};
@@ -13,34 +14,39 @@ use crate::threads::Threads;
 use cede_data::{Dataset, Split, output};
 use cede_sim::driver::Baseline;
 use cede_sim::evaluate::{Selection, TableRow};
+use clap::ValueEnum;
 use episodes::EpisodeFile;
 use serde::Serialize;
 use std::path::PathBuf;
+use traffic::Share;
 
 /// Options of `cede evaluate`.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
     source: Source,
-    /// Drivers to judge, separated by commas, or `all`
-    #[arg(long, default_value = "all", value_name = "NAME[,NAME…]")]
-    driver: Drivers,
+    /// Drivers to judge, separated by commas, or `all` [default: all]
+    #[arg(long, value_name = "NAME[,NAME…]")]
+    driver: Option<Drivers>,
     /// Encounters to judge on: train, validation, test, all, leave-one-file-out, seven-fold,
     /// separated by commas; by default those of the first three that contain encounters
     #[arg(long, value_delimiter = ',', value_name = "NAME[,NAME…]")]
     split: Vec<Selection>,
     /// Which vehicles are under test
-    #[arg(long, value_enum, default_value_t = ModeName::Joint)]
-    mode: ModeName,
+    #[arg(long, value_enum, default_value_t = UnderTest::Joint)]
+    mode: UnderTest,
+    /// In traffic mode, the shares of the vehicles that are driven, one row each [default: 0.1,0.5,1]
+    #[arg(long, value_delimiter = ',', value_name = "SHARE[,SHARE…]")]
+    share: Vec<Share>,
     /// In ego mode, the driver of the other vehicle, which has no shield [default: replay]
     #[arg(long, value_name = "NAME")]
     partner: Option<Name>,
-    /// When an episode ends
-    #[arg(long, value_enum, default_value_t = UntilName::Conflict)]
-    until: UntilName,
-    /// Whether the vehicle under test carries the shield
-    #[arg(long, value_enum, default_value_t = ShieldName::Off)]
-    shield: ShieldName,
+    /// When an episode ends [default: conflict]
+    #[arg(long, value_enum)]
+    until: Option<UntilName>,
+    /// Whether the vehicle under test carries the shield; in traffic it always does [default: off]
+    #[arg(long, value_enum)]
+    shield: Option<ShieldName>,
     /// The shield's contract: what it assumes of the other vehicles [default: worst-case]
     #[arg(long, value_name = "NAME|FILE")]
     contract: Option<Named>,
@@ -66,6 +72,17 @@ pub(crate) struct Args {
     report: Option<PathBuf>,
 }
 
+/// Which vehicles are under test.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum UnderTest {
+    /// One driver for both vehicles of an encounter: the paper's protocol
+    Joint,
+    /// The driver for one vehicle of an encounter, in either role; another for the other
+    Ego,
+    /// A share of all vehicles of a recording; the others repeat their record, and mind who is in their way
+    Traffic,
+}
+
 /// The output of `--json`.
 #[derive(Serialize)]
 struct Output<'a> {
@@ -78,7 +95,15 @@ struct Output<'a> {
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     args.threads.start()?;
-    let mut plan = args.plan()?;
+    let mode = match args.mode {
+        UnderTest::Joint => ModeName::Joint,
+        UnderTest::Ego => ModeName::Ego,
+        UnderTest::Traffic => return traffic::run(args),
+    };
+    if !args.share.is_empty() {
+        return Err(Failure::Usage("--share needs --mode traffic".to_owned()));
+    }
+    let mut plan = args.plan(mode)?;
     args.check_outputs()?;
     let sites = args.source.load(args.seed)?;
     sites.iter().try_for_each(not_empty)?;
@@ -101,7 +126,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         file.write(&records)?;
     }
     if let (Some(mut report), Some(path)) = (report, &args.report) {
-        if args.shield != ShieldName::Off {
+        if args.shielded() != ShieldName::Off {
             report.sweep(&sites[0], contract::or_worst_case(args.contract.as_ref())?)?;
         }
         report.write(path)?;
@@ -111,8 +136,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 
 impl Args {
     /// The plan of the evaluation. Without selections it takes all splits that contain files.
-    fn plan(&self) -> Result<Plan, Failure> {
-        if self.partner.is_some() && self.mode == ModeName::Joint {
+    fn plan(&self, mode: ModeName) -> Result<Plan, Failure> {
+        if self.partner.is_some() && mode == ModeName::Joint {
             return Err(Failure::ignored("--partner", "--mode joint"));
         }
         let mut selections = Vec::new();
@@ -123,16 +148,21 @@ impl Args {
         }
         let weights = self.weights.as_deref();
         let partner = self.partner.unwrap_or(Name::Baseline(Baseline::Replay));
+        let drivers = self.driver.clone().unwrap_or_else(Drivers::all);
         Ok(Plan {
-            contenders: self.driver.contenders(weights, &self.svo)?,
-            lenient: self.driver.lenient,
+            contenders: drivers.contenders(weights, &self.svo)?,
+            lenient: drivers.lenient,
             selections,
-            mode: self.mode,
+            mode,
             partner: partner.contender(weights)?,
-            until: self.until,
-            shields: self.shield.shields(self.contract.as_ref())?,
+            until: self.until.unwrap_or(UntilName::Conflict),
+            shields: self.shielded().shields(self.contract.as_ref())?,
             seed: self.seed,
         })
+    }
+
+    fn shielded(&self) -> ShieldName {
+        self.shield.unwrap_or(ShieldName::Off)
     }
 
     /// Checks that the files can be written, before the work.

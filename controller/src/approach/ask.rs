@@ -1,7 +1,7 @@
 //! Whom the policy is asked about, and what it proposes.
 
-use super::nearby::{Nearby, nearby, traffic};
 use super::Approach;
+use super::nearby::{Nearby, nearby, traffic};
 use crate::decision::Prediction;
 use crate::fault::Fault;
 use crate::instant::Instant;

@@ -113,6 +113,7 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
             waits_at_line: false,
             control: Control::Unknown,
             pace: PACE,
+            order: id.index() as u16,
             range: start..end,
         })?;
         Ok(id)
@@ -134,6 +135,7 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
         self.push(Path {
             class,
             footprint,
+            order: id.index() as u16,
             ..path
         })?;
         let limits = self.junction.limits.get(of.index()).cloned();
@@ -215,6 +217,20 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
         }
         if let Some(path) = self.junction.paths.get_mut(path.index()) {
             path.pace = pace;
+        }
+        Ok(())
+    }
+
+    /// Sets the place of `path` in the order in which vehicles at rest take turns, its number unless it is set: of two, the one
+    /// with the larger place has the first turns. Shields that are to trust each other have to agree on it (U7 of the manual);
+    /// where each builds its own junction, with its own numbers, this is how they do.
+    ///
+    /// # Errors
+    /// [`JunctionError::UnknownPath`].
+    pub fn order(&mut self, path: PathId, place: u16) -> Result<(), JunctionError> {
+        self.known(path)?;
+        if let Some(path) = self.junction.paths.get_mut(path.index()) {
+            path.order = place;
         }
         Ok(())
     }

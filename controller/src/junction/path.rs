@@ -80,6 +80,7 @@ pub struct Path {
     pub(super) waits_at_line: bool,
     pub(super) control: Control,
     pub(super) pace: f32,
+    pub(super) order: u16,
     /// Its points in the pool.
     pub(super) range: Range<usize>,
 }
@@ -119,6 +120,12 @@ impl Path {
     #[must_use]
     pub const fn pace(&self) -> f32 {
         self.pace
+    }
+
+    /// Its place in the order in which vehicles at rest take turns: its number, unless the builder was told.
+    #[must_use]
+    pub const fn order(&self) -> u16 {
+        self.order
     }
 
     /// What obliges a vehicle to give way where it enters the junction; unknown unless the builder was told.

@@ -73,7 +73,7 @@ impl<const N: usize, R: Rules> Shield<'_, N, R> {
             let Some(conflict) = self.way.conflict(other.path) else {
                 continue;
             };
-            let right = Right::of(conflict, self.way.ego(), other.path);
+            let right = Right::of(conflict, self.way, other.path);
             other.claims = other.pair.claims(contract, rule, right, &self.presence);
             if let Some(ego) = ego.filter(|_| other.claims != precedence::ALL) {
                 other
@@ -87,5 +87,5 @@ impl<const N: usize, R: Rules> Shield<'_, N, R> {
 
 /// Which of the ego and an other on `path` goes first; nothing, if they do not meet.
 fn right(way: Way<'_>, path: PathId) -> Option<Right> {
-    Some(Right::of(way.conflict(path)?, way.ego(), path))
+    Some(Right::of(way.conflict(path)?, way, path))
 }

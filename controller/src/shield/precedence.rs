@@ -8,7 +8,7 @@ use super::rules::Rules;
 use super::waiting::{Presence, dip};
 use crate::instant::micros;
 use crate::junction::zone::Zone;
-use crate::junction::{PathId, Priority, RightOfWay, RouteConflict};
+use crate::junction::{Path, PathId, Priority, RightOfWay, RouteConflict, Way};
 use core::cmp::Ordering;
 
 /// The zones in which the ego has precedence, one bit each.
@@ -38,14 +38,15 @@ pub struct Right {
 }
 
 impl Right {
-    /// On path `ego` and path `other`, which meet like this.
-    pub(crate) fn of(conflict: &RouteConflict, ego: PathId, other: PathId) -> Self {
+    /// On the ego's path and path `other`, which meet like `conflict`.
+    pub(crate) fn of(conflict: &RouteConflict, way: Way<'_>, other: PathId) -> Self {
         let RouteConflict {
             right_of_way,
             priority,
             ..
         } = *conflict;
-        let by_number = match ego.cmp(&other) {
+        let order = |path| way.path(path).map_or(0, Path::order);
+        let by_order = match order(way.ego()).cmp(&order(other)) {
             Ordering::Less => RightOfWay::Ego,
             Ordering::Greater => RightOfWay::Other,
             Ordering::Equal => RightOfWay::Unsettled,
@@ -54,7 +55,7 @@ impl Right {
             of_way: right_of_way,
             priority,
             in_turns: match priority {
-                Priority::FirstCome | Priority::Unsigned => by_number,
+                Priority::FirstCome | Priority::Unsigned => by_order,
                 Priority::Signed => right_of_way,
             },
         }

@@ -65,13 +65,13 @@ impl Driver for AtStopSign {
             return 0.0;
         };
         self.observe(view, own, state);
-        let mut acceleration = follow(state.v, f32::INFINITY, 0.0);
+        let mut acceleration = follow(state.v, DESIRED, f32::INFINITY, 0.0);
         if let Some((gap, speed)) = leader(view) {
-            acceleration = acceleration.min(follow(state.v, gap, speed));
+            acceleration = acceleration.min(follow(state.v, DESIRED, gap, speed));
         }
         if !self.released {
             let gap = own.conflict_s - LINE - state.s + STANDSTILL;
-            acceleration = acceleration.min(follow(state.v, gap, 0.0));
+            acceleration = acceleration.min(follow(state.v, DESIRED, gap, 0.0));
         }
         acceleration
     }
@@ -111,9 +111,10 @@ impl AtStopSign {
     }
 }
 
-/// Acceleration (m/s²) at `speed` (m/s), `gap` metres behind the rear of a leader at `leader` m/s.
-fn follow(speed: f32, gap: f32, leader: f32) -> f32 {
-    let ratio = (speed / DESIRED) * (speed / DESIRED);
+/// Acceleration (m/s²) at `speed` (m/s), `gap` metres behind the rear of a leader at `leader` m/s, where one would like to
+/// drive at `desired` (m/s).
+pub(crate) fn follow(speed: f32, desired: f32, gap: f32, leader: f32) -> f32 {
+    let ratio = (speed / desired) * (speed / desired);
     let closing = speed * (speed - leader) / (2.0 * (ACCELERATION * DECELERATION).sqrt());
     let wanted = STANDSTILL + (speed * HEADWAY + closing).max(0.0);
     let interaction = wanted / gap.max(0.1);

@@ -1,0 +1,215 @@
+//! Who drives: Cede, or a plain profile, behind the shield.
+
+use super::Settings;
+use super::car::Car;
+use super::look::Obstacle;
+use crate::driver::idm::follow;
+use crate::meeting::{instant, path, sensed};
+use cede_controller::{
+    Approach, Class, Decision, Drive, Junction, JunctionBuilder, JunctionError, Observation, Part,
+    PathId, Shield, Track,
+};
+use cede_data::Traffic;
+
+/// What drives a vehicle in traffic; behind all of them is the shield.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// The policy, where it has to be asked; a car-following model elsewhere.
+    Cede,
+    /// The car-following model alone: what a policy has to beat.
+    Profile,
+}
+
+/// Speed (m/s) that is wanted where the map has no limit: 50 km/h.
+const WANTED: f32 = 13.9;
+/// Lateral acceleration (m/s²) in bends.
+const LATERAL: f32 = 2.6;
+/// Paths and points of the junction of a vehicle.
+const PATHS: usize = 256;
+const POINTS: usize = 16_384;
+/// Metres from a route at which another is too far off to meet it.
+const FAR_OFF: f32 = 30.0;
+
+/// The way of a vehicle, which is path 0, through those of all others whose ways are near, whenever they come: who is late
+/// is late without limit.
+pub(super) struct Crossing {
+    junction: Junction<PATHS, POINTS, 1>,
+    /// The vehicles of the other paths, in order.
+    others: Vec<usize>,
+    wanted: f32,
+}
+
+impl Crossing {
+    /// `None` if the ways are no paths of a junction: such a vehicle is not driven.
+    pub(super) fn new(traffic: &Traffic, ego: usize) -> Option<Self> {
+        Self::build(traffic, ego).ok()
+    }
+
+    fn build(traffic: &Traffic, ego: usize) -> Result<Self, JunctionError> {
+        let own = traffic
+            .vehicles
+            .get(ego)
+            .ok_or(JunctionError::UnknownPath {
+                path: path(0),
+                paths: 0,
+            })?;
+        let wanted = own.entry.limit.unwrap_or(WANTED);
+        let mut builder = Junction::builder();
+        builder.tolerance(0.0).lateral(LATERAL);
+        let way = builder.path(&own.route, Class::Car, own.footprint)?;
+        builder.control(way, own.entry.control)?;
+        builder.speed_limit(way, 0.0, wanted)?;
+        line(&mut builder, way, own)?;
+        builder.order(way, ego as u16)?;
+        let mut others = Vec::new();
+        for (index, other) in traffic.vehicles.iter().enumerate() {
+            if index == ego || !near(own, other) {
+                continue;
+            }
+            let path = builder.path(&other.route, Class::Car, other.footprint)?;
+            builder.control(path, other.entry.control)?;
+            line(&mut builder, path, other)?;
+            builder.order(path, index as u16)?;
+            match traffic.goes_first(ego, index) {
+                Some(true) => builder.right_of_way(way, path)?,
+                Some(false) => builder.right_of_way(path, way)?,
+                None => {}
+            }
+            others.push(index);
+        }
+        Ok(Self {
+            junction: builder.build()?,
+            others,
+            wanted,
+        })
+    }
+}
+
+/// Has whoever drives on `path` wait with its front at its line, if the map has one on its way.
+fn line(
+    builder: &mut JunctionBuilder<PATHS, POINTS, 1>,
+    path: PathId,
+    vehicle: &cede_data::Participant,
+) -> Result<(), JunctionError> {
+    let front = 0.5 * vehicle.footprint.length;
+    match vehicle.entry.line.filter(|&line| line > front) {
+        Some(line) => builder.line(path, line - front),
+        None => Ok(()),
+    }
+}
+
+/// Whether the ways of two are so close that they may meet.
+fn near(own: &cede_data::Participant, other: &cede_data::Participant) -> bool {
+    let bounds = |vehicle: &cede_data::Participant| {
+        let points = vehicle.route.points().iter();
+        points.fold(
+            [
+                f32::INFINITY,
+                f32::INFINITY,
+                f32::NEG_INFINITY,
+                f32::NEG_INFINITY,
+            ],
+            |b, p| [b[0].min(p.x), b[1].min(p.y), b[2].max(p.x), b[3].max(p.y)],
+        )
+    };
+    let (a, b) = (bounds(own), bounds(other));
+    a[0] <= b[2] + FAR_OFF
+        && b[0] <= a[2] + FAR_OFF
+        && a[1] <= b[3] + FAR_OFF
+        && b[1] <= a[3] + FAR_OFF
+}
+
+/// A driver at its place.
+pub(super) struct Seat<'t> {
+    crossing: &'t Crossing,
+    driver: Option<Driver<'t>>,
+    /// The shield was ready once.
+    ready: bool,
+    /// Who was there in the last step.
+    seen: Vec<bool>,
+}
+
+enum Driver<'t> {
+    Cede(Box<Approach<'t, 't>>),
+    Profile(Box<Shield<'t>>),
+}
+
+impl<'t> Seat<'t> {
+    pub(super) fn new(crossing: &'t Crossing, settings: &Settings<'t>) -> Self {
+        let (junction, ego) = (&crossing.junction, path(0));
+        let driver = match settings.kind {
+            Kind::Cede => Drive::new(settings.policy, settings.contract, Part::Left)
+                .enter(junction, ego)
+                .map(|approach| Driver::Cede(Box::new(approach))),
+            Kind::Profile => Shield::enter(settings.contract, junction, ego)
+                .map(|shield| Driver::Profile(Box::new(shield))),
+        };
+        Self {
+            crossing,
+            driver: driver.ok(),
+            ready: false,
+            seen: vec![false; crossing.others.len()],
+        }
+    }
+
+    /// The acceleration (m/s²) of car `ego` at `step`; `None` as long as the shield is not ready.
+    pub(super) fn decide(
+        &mut self,
+        cars: &[Car<'_>],
+        ego: usize,
+        step: u32,
+        leader: Option<Obstacle>,
+    ) -> Option<Decision> {
+        let (own, now) = (&cars[ego], instant(step));
+        let tracks = self.tracks(cars);
+        let observation = Observation {
+            ego: sensed(&own.vehicle.route, own.state()),
+            tracks: &tracks,
+        };
+        let (speed, wanted) = (own.state().v, self.crossing.wanted);
+        let (gap, ahead) = leader.map_or((f32::INFINITY, 0.0), |it| (it.gap, it.speed));
+        let most = follow(speed, wanted, gap, ahead);
+        let driver = self.driver.as_mut()?;
+        if !self.ready {
+            let ready = match driver {
+                Driver::Cede(approach) => approach.ready(now, &observation),
+                Driver::Profile(shield) => shield.ready(now, &observation),
+            };
+            self.ready = ready.is_ok();
+            if !self.ready {
+                return None;
+            }
+        }
+        Some(match driver {
+            Driver::Cede(approach) => approach.decide_up_to(now, &observation, most),
+            Driver::Profile(shield) => {
+                let response = shield.contract().response();
+                let profile = shield.way().profile();
+                let allowed = profile.acceleration(observation.ego.s, speed, response);
+                shield.filter(now, &observation, most.min(allowed))
+            }
+        })
+    }
+
+    /// Everybody who is there, by the number of its path; who has left is forgotten.
+    fn tracks(&mut self, cars: &[Car<'_>]) -> Vec<Track> {
+        let mut tracks = Vec::new();
+        let others = self.crossing.others.iter().zip(&mut self.seen).zip(1..);
+        for ((&index, seen), number) in others {
+            let car = &cars[index];
+            if car.is_there() {
+                let vehicle = sensed(&car.vehicle.route, car.state());
+                tracks.push(Track::on(number, PathId::new(number as u8), vehicle));
+            } else if *seen {
+                match &mut self.driver {
+                    Some(Driver::Cede(approach)) => approach.forget(number),
+                    Some(Driver::Profile(shield)) => shield.forget(number),
+                    None => {}
+                }
+            }
+            *seen = car.is_there();
+        }
+        tracks
+    }
+}
