@@ -236,3 +236,46 @@ fn each_orientation_has_its_row_and_the_middle_one_is_the_policy_as_it_learned()
     plain["driver"] = dial[1]["driver"].clone();
     assert_eq!(plain, dial[1]);
 }
+
+#[test]
+fn in_traffic_a_share_of_the_vehicles_of_recordings_is_driven() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = folder.path().join("made");
+    let made = made.to_str().unwrap();
+    stdout(&mut cede(&[
+        "data",
+        "synthesize",
+        "--out",
+        made,
+        "--encounters",
+        "20",
+    ]));
+    let site = format!("{made}/SYN-T-AWS-0.toml");
+    let traffic = |arguments: &[&str]| {
+        let mut command = cede(&["evaluate", "--data", made, "--mode", "traffic"]);
+        command.args(["--site", &site]).args(arguments);
+        command
+    };
+    let text = stdout(&mut traffic(&["--share", "0,1", "--json"]));
+    let object: Value = serde_json::from_str(&text).unwrap();
+    let rows = object["rows"].as_array().unwrap();
+    let drivers: Vec<_> = rows.iter().map(|row| row["driver"].as_str()).collect();
+    assert_eq!(drivers, [Some("profile"), Some("profile"), Some("cede")]);
+    assert_eq!(
+        (&rows[0]["driven"], &rows[0]["delay_s"]),
+        (&0.into(), &Value::Null)
+    );
+    for row in &rows[1..] {
+        assert!(row["driven"].as_u64() > Some(0), "{row}");
+        assert!(row["no_plan_share"].as_f64().is_some(), "{row}");
+    }
+    let table = stdout(&mut traffic(&["--share", "1"]));
+    assert!(
+        table.contains("| cede") && table.contains("100 %"),
+        "{table}"
+    );
+    assert!(stderr(&mut traffic(&["--split", "all"]), 2).contains("--split has no effect"));
+    assert!(stderr(&mut traffic(&["--share", "1.5"]), 2).contains("not a share"));
+    assert!(stderr(&mut evaluate(&["--mode", "traffic"]), 2).contains("needs recordings"));
+    assert!(stderr(&mut evaluate(&["--share", "1"]), 2).contains("--mode traffic"));
+}

@@ -18,6 +18,7 @@ mod edges;
 mod headroom;
 mod hidden;
 mod memory;
+mod turns;
 mod walkers;
 
 const WORST: Contract = Contract::WORST_CASE;

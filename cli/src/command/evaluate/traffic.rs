@@ -4,6 +4,7 @@ use super::Args;
 use crate::contract;
 use crate::drivers;
 use crate::failure::Failure;
+use crate::plural::Count;
 use crate::progress;
 use crate::source::names;
 use cede_data::{Dataset, Traffic};
@@ -58,6 +59,12 @@ struct Output<'a> {
 /// Runs the command.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     refuse_ignored(args)?;
+    if args.source.is_synthetic() {
+        return Err(Failure::Usage(
+            "--mode traffic needs recordings: name their folder with --data; `cede data synthesize --out DIR` writes some"
+                .to_owned(),
+        ));
+    }
     let policy = drivers::policy(args.weights.as_deref())?;
     let policy = match args.svo.as_slice() {
         [] => policy,
@@ -180,8 +187,10 @@ fn table(rows: &[Summary]) -> String {
         }
         let Some(first) = block.first() else { continue };
         text += &format!(
-            "{}: {} vehicles in {} recordings, behind the shield\n{table}\n\n",
-            first.site, first.vehicles, first.recordings
+            "{}: {} in {}, behind the shield\n{table}\n\n",
+            first.site,
+            Count(first.vehicles, "vehicle"),
+            Count(first.recordings, "recording")
         );
     }
     text
