@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs the controller on bare cores under QEMU and holds it to its bars: the host's decisions bit for bit, flash and
-# RAM, instructions, no panic, no allocation. Cortex-M4F and rv32imafc with the policy
+# RAM, instructions, no panic, no allocation; a bound on the instructions of a decision, from the disassembly. Cortex-M4F and rv32imafc with the policy
 # in f32; Cortex-M4F, M3, M0+ and rv32imac with the policy in integers.
 # Shows as well that a planted panic, a planted allocation and one changed bit are found.
 set -euo pipefail
@@ -16,6 +16,7 @@ max_flash=98304 # of the M4F with the policy in f32
 max_soft_flash=131072
 max_ram=16384      # with an FPU
 max_soft_ram=18432 # without: its routines need stack, too
+max_instructions=475000 # derived, of a decision of the M4F with the policy in f32
 
 unset RUSTFLAGS
 export CARGO_TERM_QUIET=true
@@ -23,9 +24,11 @@ cargo=(cargo --config net.retry=3)
 workspace=firmware/cortex-m/Cargo.toml
 
 # The host's side: observations, and its decisions.
-mkdir -p "$build/golden" "$build/golden-i16" "$build/tampered"
+mkdir -p "$build/golden" "$build/golden-i16" "$build/golden-micromath" "$build/tampered"
 "${cargo[@]}" run --locked --release --manifest-path $workspace --target-dir "$build/host" -p cede-golden -- "$build/golden"
 "$build/host/release/cede-golden" "$build/golden-i16" i16
+"${cargo[@]}" run --locked --release --manifest-path $workspace --target-dir "$build/host" -p cede-golden --features micromath \
+    -- "$build/golden-micromath" i16
 
 # Lints see the host's build of the same code: they need no target, and nothing is linked.
 if "${cargo[@]}" clippy --version >/dev/null 2>&1; then
@@ -114,8 +117,27 @@ value() { sed -n "s/^$1: //p" "$build/log"; }
 on "Cortex-M4F, f32" $target mps2-an386 10 golden $max_flash
 network=$(value "instructions of the network, most")
 echo "network 22-48-48-48-4, instructions for each of its 2 x 5,856 multiplications and additions: $(awk "BEGIN { printf \"%.2f\", $network / 11712 }")"
+# derived [options]: what firmware/instructions.py derives for a decision of the image, which the clock's `ticks` calls.
+derived() {
+    python3 firmware/instructions.py "$build/target/$target/release/cede-cortex-m" --root 5Clock5ticks --loops firmware/loops.txt "$@" |
+        sed -n 's/.*: //p'
+}
+if command -v python3 >/dev/null; then
+    most=$(value "instructions of a decision, most") bound=$(derived)
+    echo "instructions of a decision: $most the most here, $bound derived (of $max_instructions)"
+    [ "$most" -le "$bound" ] || fail "a decision took more instructions than were derived"
+    [ "$bound" -le $max_instructions ] || fail "more than $max_instructions instructions"
+    [ "$most" -gt "$(derived --set WATCHED=1)" ] || fail "a wrong number in the table is not found"
+    sed '/ missed in /d' firmware/loops.txt >"$build/loops.txt"
+    ! derived --loops "$build/loops.txt" 2>/dev/null | grep -q . || fail "a loop that is not in the table has a bound"
+    echo "a wrong number in the table of loops is found, and a loop that is not in it is refused"
+else
+    echo "skipped: no Python (the bound on instructions)" >&2
+    [ -z "${CEDE_SKIPS:-}" ] || echo "Python (the bound on instructions)" >>"$CEDE_SKIPS"
+fi
 on "rv32imafc, f32" riscv32imafc-unknown-none-elf virt 0 golden $max_soft_flash
 on "Cortex-M4F, i16" $target mps2-an386 10 golden-i16 $max_flash --features i16
+on "Cortex-M4F, i16, micromath" $target mps2-an386 10 golden-micromath $max_flash --features i16,micromath
 on "Cortex-M3, i16" thumbv7m-none-eabi mps2-an385 6 golden-i16 $max_soft_flash --features i16
 # The M3 executes every instruction of the M0+; QEMU has no machine with an M0+ and enough flash.
 on "Cortex-M0+, i16" thumbv6m-none-eabi mps2-an385 6 golden-i16 $max_soft_flash --features i16

@@ -71,7 +71,7 @@
 //!
 //! # Features
 //!
-//! They only add.
+//! All but the last only add.
 //!
 //! | | |
 //! |---|---|
@@ -81,6 +81,7 @@
 //! | `many-others` | room for 24 others instead of 8, for hosts |
 //! | `estimates` | the orientations that others show, estimated online: `Approach::set_estimates` |
 //! | `core-sqrt` | square roots by the core, where it has an instruction for them: the same bits in less time |
+//! | `micromath` | tanh and atan2 by micromath: in fewer instructions, with other bits, so that decisions differ from those of every build without it |
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -88,6 +89,8 @@
 extern crate std;
 
 mod approach;
+#[cfg(any(test, feature = "micromath"))]
+mod coarse;
 pub mod dangerous;
 mod decision;
 mod fault;

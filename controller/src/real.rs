@@ -68,6 +68,24 @@ pub(crate) fn sqrt(x: f32) -> f32 {
     libm::sqrtf(x)
 }
 
+/// The hyperbolic tangent; with the feature `micromath` a coarser one.
+#[inline]
+pub(crate) fn tanh(x: f32) -> f32 {
+    #[cfg(feature = "micromath")]
+    return crate::coarse::tanh(x);
+    #[cfg(not(feature = "micromath"))]
+    libm::tanhf(x)
+}
+
+/// The angle (rad) of the point (`x`, `y`); with the feature `micromath` a coarser one.
+#[inline]
+pub(crate) fn atan2(y: f32, x: f32) -> f32 {
+    #[cfg(feature = "micromath")]
+    return crate::coarse::atan2(y, x);
+    #[cfg(not(feature = "micromath"))]
+    libm::atan2f(y, x)
+}
+
 impl Real for f32 {
     #[inline]
     fn of(value: f32) -> Self {
@@ -123,7 +141,7 @@ impl Elementary for f32 {
         if self == 0.0 && other == 0.0 {
             origin
         } else {
-            libm::atan2f(self, other)
+            atan2(self, other)
         }
     }
 }

@@ -333,6 +333,7 @@ fn named(words: &mut Input<'_>, out: &mut Output) -> Result<(), Refusal> {
     let named = match words.word()? {
         0 => Contract::WORST_CASE,
         1 => Contract::ALL_WAY_STOP,
+        2 => cede_golden::INEXACT,
         _ => return Err(Refusal::Choice),
     };
     contract::write(&named, out);

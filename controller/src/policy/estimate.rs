@@ -6,7 +6,7 @@
 use crate::policy::Policy;
 use crate::policy::orientation::Orientation;
 use crate::policy::pair::Pair;
-use crate::real::{Elementary, Real};
+use crate::real::{Elementary, Real, tanh};
 
 /// The orientations that are compared.
 const SETTINGS: [Orientation; 5] = Orientation::FIVE;
@@ -95,7 +95,7 @@ fn held(wanted: f32, speed: f32, elapsed: f32) -> f32 {
 
 /// eˣ for x ≤ 0, by what the network needs anyway.
 fn exp(x: f32) -> f32 {
-    let half = libm::tanhf(0.5 * x);
+    let half = tanh(0.5 * x);
     (1.0 + half) / (1.0 - half)
 }
 

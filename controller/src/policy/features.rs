@@ -4,7 +4,7 @@ use crate::junction::Control;
 use crate::junction::conflict::RightOfWay;
 use crate::junction::kind::ConflictKind;
 use crate::policy::pair::{Crosser, Leader, Pair, VehicleState};
-use crate::real::Elementary;
+use crate::real::{Elementary, atan2};
 
 /// Most features that a set has.
 pub const MAX_FEATURES: usize = 22;
@@ -206,7 +206,7 @@ fn fill<R>(features: &mut [R; MAX_FEATURES], values: impl IntoIterator<Item = R>
 fn raw<R: Elementary>(pair: &Pair<R>) -> [R; 8] {
     let heading = |p: &VehicleState<R>| {
         let direction = p.pose.direction;
-        R::of(libm::atan2f(direction.y, direction.x))
+        R::of(atan2(direction.y, direction.x))
     };
     let (a, b) = (&pair.ego, &pair.other);
     let (at, bt) = (a.pose.position, b.pose.position);

@@ -34,7 +34,7 @@ pub use crate::kinematics::MAX_ACCELERATION;
 #[must_use]
 #[inline]
 pub fn acceleration(output: f32) -> f32 {
-    MAX_ACCELERATION * libm::tanhf(output)
+    MAX_ACCELERATION * crate::real::tanh(output)
 }
 
 /// How [`acceleration`] answers to a small change of the output, where it is `acceleration` (m/s²).

@@ -303,7 +303,7 @@ pub(crate) fn sharp_kink(polyline: Polyline<'_>) -> Option<(usize, f32)> {
         let before = direction(&polyline.piece(i - 1)?);
         let after = direction(&polyline.piece(i)?);
         let (along, across) = (before.dot(&after), before.perp(&after).abs());
-        (along < SHARP).then(|| (i, libm::atan2f(across, along).to_degrees()))
+        (along < SHARP).then(|| (i, crate::real::atan2(across, along).to_degrees()))
     })
 }
 
