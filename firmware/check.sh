@@ -1,10 +1,16 @@
 #!/usr/bin/env bash
 # Runs the controller on bare cores under QEMU and holds it to its bars: the host's decisions bit for bit, flash and
-# RAM, instructions, no panic, no allocation; a bound on the instructions of a decision, from the disassembly. Cortex-M4F and rv32imafc with the policy
-# in f32; Cortex-M4F, M3, M0+ and rv32imac with the policy in integers.
+# RAM, instructions, no panic, no allocation; a bound on the instructions of a decision, from the disassembly.
+#
+#   firmware/check.sh           Cortex-M4F and rv32imafc with the policy in f32; Cortex-M4F, M3, M0+ and rv32imac with
+#                               the policy in integers; an RTIC application; the C library on Cortex-M4F, M7 and M33F
+#   firmware/check.sh --quick   Cortex-M4F with the policy in f32, M3 in integers, and the C library on Cortex-M4F
+#
 # Shows as well that a planted panic, a planted allocation and one changed bit are found.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+quick=${1:-}
+case $quick in '' | --quick) ;; *) sed -n '2,/^set/p' "$0" | sed '$d;s/^# \{0,1\}//' >&2 && exit 2 ;; esac
 build=$PWD/.build/cortex-m
 mkdir -p "$build"
 exec 8>"$build/check.lock" # one check at a time: they share a log and golden decisions
@@ -135,10 +141,14 @@ else
     echo "skipped: no Python (the bound on instructions)" >&2
     [ -z "${CEDE_SKIPS:-}" ] || echo "Python (the bound on instructions)" >>"$CEDE_SKIPS"
 fi
+on "Cortex-M3, i16" thumbv7m-none-eabi mps2-an385 6 golden-i16 $max_soft_flash --features i16
+if [ -n "$quick" ]; then
+    firmware/capi/check.sh --quick
+    exit
+fi
 on "rv32imafc, f32" riscv32imafc-unknown-none-elf virt 0 golden $max_soft_flash
 on "Cortex-M4F, i16" $target mps2-an386 10 golden-i16 $max_flash --features i16
 on "Cortex-M4F, i16, micromath" $target mps2-an386 10 golden-micromath $max_flash --features i16,micromath
-on "Cortex-M3, i16" thumbv7m-none-eabi mps2-an385 6 golden-i16 $max_soft_flash --features i16
 # The M3 executes every instruction of the M0+; QEMU has no machine with an M0+ and enough flash.
 on "Cortex-M0+, i16" thumbv6m-none-eabi mps2-an385 6 golden-i16 $max_soft_flash --features i16
 on "rv32imac, i16" riscv32imac-unknown-none-elf virt 0 golden-i16 $max_soft_flash --features i16

@@ -3,10 +3,12 @@
 # QEMU, where they must print the same; no panic, no allocation, no function of a C library in it, and nothing global
 # but the interface; injected faults and updates have the outcomes that are stated; a bound on the stack by the graph of calls;
 # the tasks under operating systems; the CAN example. Shows as well that a planted fault of each kind is found.
+# With --quick not on M7 and M33F.
 # $FREERTOS_KERNEL may name a FreeRTOS kernel, V11: the C task is run under it then.
 # Sets up what it needs (firmware/setup.sh); firmware/check.sh calls it.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
+quick=${1:-}
 build=$PWD/.build/capi
 mkdir -p "$build"
 exec 7>"$build/lock" # one check at a time
@@ -194,8 +196,8 @@ for mode in 0x00400000 0x00800000 0x00c00000 0x01000000; do # up, down, to zero;
 done
 echo "each wrong mode of the FPU is found"
 on m4f mps2-an386 cortex-m4 fpv4-sp-d16 40
-on m7 mps2-an500 cortex-m7 fpv5-sp-d16 40
-on m33f mps2-an505 cortex-m33 fpv5-sp-d16 50 -Wl,--defsym=flash_at=0x10000000,--defsym=ram_at=0x38000000
+[ -n "$quick" ] || on m7 mps2-an500 cortex-m7 fpv5-sp-d16 40
+[ -n "$quick" ] || on m33f mps2-an505 cortex-m33 fpv5-sp-d16 50 -Wl,--defsym=flash_at=0x10000000,--defsym=ram_at=0x38000000
 if [ -n "${derived:-}" ]; then
     painted=$(sed -n 's/^measured: stack, bytes: //p' "$build/m4f/ecu.txt")
     echo "stack of ecu: $painted bytes were touched, $derived are derived"
