@@ -277,3 +277,32 @@ proptest! {
         carry_out(contract, drivetrain, case)?;
     }
 }
+
+/// From rest, with the brakes on, a first command that is harder than `go` is followed later than `go` would be.
+#[test]
+fn one_that_stands_is_no_farther_after_a_first_command_harder_than_go() {
+    let contract = Contract::builder()
+        .latency(0.03)
+        .ego_acceleration(2.2)
+        .ego_go(0.07)
+        .ego_braking(8.0)
+        .ego_emergency(8.0)
+        .ego_lag(0.04)
+        .build()
+        .unwrap();
+    let drivetrain = Drivetrain {
+        late: [1.0; 2],
+        lag: 1.0,
+        off: [0.0; 2],
+    };
+    for target in [0.3, 1.0, 3.0, 10.0] {
+        let case = Case {
+            v: 0.0,
+            a: -8.0,
+            history: std::vec![-8.0; 3],
+            first: 2.2,
+            target: Some(target),
+        };
+        carry_out(contract, drivetrain, case).unwrap();
+    }
+}
