@@ -67,3 +67,15 @@ Record valid (k : contract) : Prop := {
   A4_speed : ego_max_speed k <= other_max_speed k;
   unheld_enough : 1 / 100 <= unheld k
 }.
+
+(* A contract with a drivetrain and brakes that are late and not exact. Its latency may last several periods. *)
+Record drivetrain := {
+  exact :> contract;
+  ego_emergency : R;   (* braking that is commanded while there is no plan *)
+  ego_lag : R;         (* τ *)
+  ego_gain : R;        (* γ *)
+  ego_disturbance : R  (* d *)
+}.
+
+(* D14: the response T. The code computes it in f32. *)
+Definition response (k : drivetrain) := switching k + ego_lag k.

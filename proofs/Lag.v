@@ -62,11 +62,11 @@ Proof.
   assert (0 < exp ((u - t1) / theta) * (x u - L - q * (u - t1))) by (apply Rmult_lt_0_compat; lra). lra.
 Qed.
 
-(* A speed v that follows x but where it is at c or below, from where it starts anew: the vehicle at rest (c = 0), or, with
-   signs changed, the one that a limiter holds. It starts only when it is pulled. *)
+(* The speed v changes as x does, but where it is c or less it may be held, until it is pulled away: the vehicle at rest
+   (c = 0); or, with signs changed, the one that a limiter holds. Of the times at which it was held z is the last. *)
 Definition goes_with (v x pull : R -> R) (c : R) :=
   forall t t', t <= t' -> v t' - v t <= x t' - x t \/
-    exists z, t < z <= t' /\ v z <= c /\ pull z <= x z /\ v t' - v z <= x t' - x z.
+    exists z, t < z <= t' /\ v z <= c /\ pull z <= x z /\ v t' - v z <= x t' - x z /\ v t' - v t <= x t' - x z.
 
 (* A bound on v that rises at least so fast. *)
 Definition rises_at_least (f : R -> R) (q t1 t2 : R) :=
@@ -77,7 +77,7 @@ Variables (theta tau c T : R) (v x pull bound : R -> R).
 Hypothesis lag : lags theta x pull.
 Hypothesis no_longer : theta <= tau.
 Hypothesis goes : goes_with v x pull c.
-Hypothesis above : forall u, T <= u -> c <= bound u.
+Hypothesis above : forall u, T <= u -> Rmin c (bound T) <= bound u.
 
 (* From t1 to t2 the bound rises at q or faster, and nothing that was followed from tau before t1 on is more than q; nor, if
    that begins before T, is the acceleration at T. *)
@@ -103,7 +103,7 @@ Let y s := V + x s - x p.
 Let P s := if Rlt_dec s p then V + theta * a0 + a0 * (s - p) else V + pull s - x p.
 
 (* At p nothing is pulled harder than in any piece that begins soon after it; or it starts from rest there. *)
-Hypothesis calm : (p = T) \/ (V <= c /\ theta * a0 <= 0).
+Hypothesis calm : (p = T) \/ (V <= Rmin c (bound T) /\ theta * a0 <= 0).
 
 Let holds u := y u <= bound u /\ P (u - theta) <= bound u.
 
@@ -226,12 +226,17 @@ Proof.
   { intros p. destruct (Req_dec theta 0) as [z | nz].
     - exists 0. rewrite (at_once _ _ _ lag z p). lra.
     - exists ((pull p - x p) / theta). field. exact nz. }
-  destruct (goes T u lo) as [on | (z & [z1 z2] & vz & rest_ & on)].
+  destruct (goes T u lo) as [on | (z & [z1 z2] & vz & rest_ & on & on0)].
   - destruct (acc T) as [a0 A].
     destruct (through_pieces T (v T) a0 ltac:(lra) A ltac:(auto) T E all T ltac:(lra) ltac:(lra)
                 (holds_at_first T (v T) a0 A v0) u ltac:(lra)) as [Y _]. lra.
   - destruct (acc z) as [a0 A]. pose proof (above z ltac:(lra)).
-    destruct (through_pieces z (v z) a0 ltac:(lra) A ltac:(right; lra) T E all z ltac:(lra) ltac:(lra)
-                (holds_at_first z (v z) a0 A ltac:(lra)) u ltac:(lra)) as [Y _]. lra.
+    set (V := Rmin (v z) (v T)).
+    assert (VV : V <= v z /\ V <= v T) by (split; [apply Rmin_l | apply Rmin_r]).
+    assert (Vc : V <= Rmin c (bound T)) by (apply Rmin_glb; lra).
+    destruct (through_pieces z V a0 ltac:(lra) A ltac:(right; split; [exact Vc | lra]) T E all z ltac:(lra) ltac:(lra)
+                (holds_at_first z V a0 A ltac:(lra)) u ltac:(lra)) as [Y _].
+    assert (v u - V <= x u - x z); [| lra].
+    unfold V. destruct (Rmin_spec (v z) (v T)) as [[_ ->] | [_ ->]]; lra.
 Qed.
 End Envelope.
