@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# Line coverage of the controller by its own tests (cargo test -p cede-controller): which lines of controller/src no test runs.
+# Line and branch coverage of the controller by its own tests (cargo test -p cede-controller): which lines of controller/src no
+# test runs, and which branches none takes.
 #
-#   tests/coverage.sh            a table by file, the total, and the lines that are not run
-#   tests/coverage.sh --least 95 exit status 1 if the total is below so many per cent
+#   tests/coverage.sh            a table by file, the totals, and the lines that are not run
+#   tests/coverage.sh --least 95 exit status 1 if the lines are below so many per cent
 #
-# Test modules do not count. Lines are in .build/coverage/lcov.info, for other programs. Needs llvm-profdata and llvm-cov 19
-# or later: root on Debian gets them. Exit status 77: they cannot be had, and nothing was measured.
+# Test modules do not count. All is in .build/coverage/lcov.info, for other programs. Needs llvm-profdata and llvm-cov of the
+# compiler's own version or later: root on Debian gets them. Exit status 77: they cannot be had, and nothing was measured.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 least=0
@@ -18,23 +19,25 @@ case "${1:-}" in
     ;;
 esac
 # What Rust writes, older tools do not read.
-tools() { for version in '' -22 -21 -20 -19; do
+needed=$(rustc -vV | grep -oE '^LLVM version: [0-9]+' | grep -oE '[0-9]+')
+tools() { for version in "" "-$needed" "-$((needed + 1))"; do
     command -v "llvm-cov$version" >/dev/null || continue
-    [ "$("llvm-cov$version" --version | grep -oE 'version [0-9]+' | cut -d' ' -f2)" -ge 19 ] && echo "$version" && return
+    [ "$("llvm-cov$version" --version | grep -oE 'version [0-9]+' | cut -d' ' -f2)" -ge "$needed" ] && echo "$version" && return
 done
 return 1; }
 if ! tools >/dev/null && command -v apt-get >/dev/null && [ "$(id -u)" = 0 ]; then
     apt-get -qq -o DPkg::Lock::Timeout=300 update
-    DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 install -y --no-install-recommends llvm-19 >/dev/null || true
+    DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 install -y --no-install-recommends "llvm-$needed" >/dev/null || true
 fi
 if ! version=$(tools); then
-    echo "SKIPPED: coverage was not measured: no llvm-cov 19 or later (Debian: llvm-19)" >&2
+    echo "SKIPPED: coverage was not measured: no llvm-cov $needed or later (Debian: llvm-$needed)" >&2
     exit 77
 fi
 out=$PWD/.build/coverage
 rm -rf "$out/raw"
 mkdir -p "$out/raw"
-export CARGO_TARGET_DIR=$out/target RUSTFLAGS='-C instrument-coverage'
+# Branches are counted by an option that the stable compiler has under lock.
+export CARGO_TARGET_DIR=$out/target RUSTC_BOOTSTRAP=1 RUSTFLAGS='-C instrument-coverage -Z coverage-options=branch'
 cargo test --quiet -p cede-controller --lib --tests --no-run
 # A raw profile for each program; of the compiler's own helpers none.
 LLVM_PROFILE_FILE=$out/raw/%p-%m.profraw cargo test --quiet -p cede-controller --lib --tests >/dev/null
@@ -58,10 +61,17 @@ awk -v least="$least" -v root="$PWD/" '
         split(substr($0, 4), part, ",")
         if (part[1] < last) { all[name]++; total++; if (part[2] > 0) { run[name]++; hit++ } else missed[name] = missed[name] " " part[1] }
     }
+    # A branch that no run comes to counts as one that is not taken.
+    /^BRDA:/ && counted {
+        split(substr($0, 6), part, ",")
+        if (part[1] < last) { ways[name]++; branches++; if (part[4] + 0 > 0) { taken[name]++; took++ } }
+    }
     END {
         if (!total) { print "coverage: no line was counted" > "/dev/stderr"; exit 1 }
-        for (name in all) printf "%6.2f %% of %5d  %s%s\n", 100 * run[name] / all[name], all[name], name, (missed[name] ? ":" missed[name] : "") | "sort -k4"
-        close("sort -k4")
-        printf "%6.2f %% of %5d  controller\n", 100 * hit / total, total
+        print "   lines            branches"
+        row = "%6.2f %% of %5d  %6.2f %% of %5d  %s%s\n"
+        for (name in all) printf row, 100 * run[name] / all[name], all[name], ways[name] ? 100 * taken[name] / ways[name] : 100, ways[name], name, (missed[name] ? ":" missed[name] : "") | "sort -k9"
+        close("sort -k9")
+        printf row, 100 * hit / total, total, 100 * took / branches, branches, "controller", ""
         if (100 * hit / total < least) { print "coverage: below " least " %" > "/dev/stderr"; exit 1 }
     }' "$out/lcov.info"

@@ -109,17 +109,17 @@ fn uncertain<R: Real>(contract: &Contract, command: R) -> R {
 }
 
 /// How far below 0 (m/s) a bound on the ego's speed from below may count down while accelerations of at least `least`
-/// (m/s²) act, so that, counted up from there at a plan's `go`, it stays one.
+/// (m/s²) act, so that, counted up from there at `most` or less, it stays one.
 ///
 /// An ego that stands while its brakes let go starts later than its lag, by the time in which the acceleration comes up
-/// to 0: ln(1 + b/go) time constants at most, and ln(1 + x) ≤ x/√(1 + x).
-pub fn hold<R: Real>(contract: &Contract, least: R) -> R {
+/// to 0: ln(1 + b/`most`) time constants at most, and ln(1 + x) ≤ x/√(1 + x). The speed that it lacks grows with `most`.
+pub fn hold<R: Real>(contract: &Contract, least: R, most: R) -> R {
     let zero = R::of(0.0);
     if contract.ego.lag == 0.0 {
         return zero;
     }
     let braked = zero.max(-least);
-    let share = braked / weakest(contract, R::of(contract.ego.go));
+    let share = braked / most;
     -(R::of(contract.ego.lag) * braked / (R::of(1.0) + share).sqrt())
 }
 

@@ -59,7 +59,7 @@ pub fn departure<R: Real>(
     let (strong, weak) = (strongest(contract, command), weakest(contract, command));
     let (strong_go, weak_go) = (strongest(contract, go), weakest(contract, go));
     let [below, _] = inherited.bounds();
-    let floor = hold(contract, below.min(weak));
+    let floor = hold(contract, below.min(weak), weak.max(weak_go));
     let slower = |from: Reach<R>, low, time| {
         let from = if contract.is_exact() {
             from

@@ -66,7 +66,7 @@ pub(super) fn grace(contract: &Contract) -> u16 {
 
 /// Periods, beyond the first one, until an ego that stands with its brakes applied certainly follows `go` (m/s²).
 fn late(contract: &Contract, go: f32) -> u16 {
-    let stands = -hold(contract, -strongest(contract, contract.ego.emergency)) / go;
+    let stands = -hold(contract, -strongest(contract, contract.ego.emergency), go) / go;
     let periods = (contract.response() + stands) / contract.period;
     let whole = periods as u16;
     if f32::from(whole) < periods {
