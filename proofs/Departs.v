@@ -150,4 +150,92 @@ Proof.
     + replace (T + 0) with T by ring. rewrite b0. lra.
   - rewrite b0. pose proof (low_at_first legs r ord). lra.
 Qed.
+
+(** * How far *)
+
+Definition after_low := fold_left slower.
+
+Lemma one_leg_low r d q o u : 0 <= d -> o <= u -> u <= o + d ->
+  (forall t, o < t <= u -> in_leg r d q (t - o) <= v t) -> 0 <= speed (faded r (fade * d)) -> 0 <= in_leg r d q (u - o) ->
+  speed (faded r (fade * d)) <= v o ->
+  (speed (faded r (fade * d)) + in_leg r d q (u - o)) * (u - o) * (1 / 2) <= s u - s o.
+Proof.
+  intros d0 le ud below f0 e0 first_. set (f := speed (faded r (fade * d))) in *. set (dt := u - o) in *.
+  destruct (Req_dec dt 0) as [z | nz].
+  { rewrite z. replace u with o by (unfold dt in z; lra). lra. }
+  assert (dt > 0) by (unfold dt in *; lra). set (W := in_leg r d q dt) in *.
+  destruct (slope f W dt ltac:(lra)) as (p & Q).
+  assert (line : forall t, o <= t <= u -> f + p * (t - o) <= v t).
+  { intros t [lo hi]. destruct (Req_dec t o) as [-> | ne]; [replace (o - o) with 0 by ring; lra |].
+    apply Rle_trans with (2 := below t ltac:(lra)). unfold in_leg. fold f. pose proof (Rmax_r cap f).
+    assert (W1 : W <= f + q * dt) by (unfold W, in_leg; fold f; apply Rmin_l).
+    assert (W2 : W <= Rmax cap f) by (unfold W, in_leg; fold f; apply Rmin_r).
+    assert (p <= q) by nra. assert (p * (t - o) <= q * (t - o)) by nra.
+    apply Rmin_glb; [lra |]. destruct (Rle_dec p 0).
+    - assert (p * (t - o) <= 0) by nra. lra.
+    - assert (p * (t - o) <= p * dt) by (unfold dt; nra). lra. }
+  pose proof (above_line s v f p o u m le line) as B. fold dt in B.
+  replace (p * dt * dt / 2) with ((W - f) * dt / 2) in B by (rewrite <- Q; field). lra.
+Qed.
+
+Lemma in_leg_start r d q : in_leg r d q 0 = speed (faded r (fade * d)).
+Proof. unfold in_leg. rewrite Rmult_0_r, Rplus_0_r. apply Rmin_left, Rmax_r. Qed.
+
+Lemma legs_go s0 legs : forall r o, ordered legs -> goes_on r legs ->
+  (forall t, o <= t <= o + total legs -> low_at r legs (t - o) <= v t) -> distance r <= s o - s0 ->
+  distance (after_low legs r) <= s (o + total legs) - s0 /\ speed (after_low legs r) <= v (o + total legs).
+Proof.
+  induction legs as [| [d q] legs IH]; intros r o ord go below so.
+  - cbn in *. rewrite Rplus_0_r. pose proof (below o ltac:(lra)). lra.
+  - inversion ord as [| ? ? d0 ord']; subst. cbn [fst total] in *. destruct go as (f0 & e0 & go).
+    pose proof (total_nonneg legs ord').
+    change (after_low ((d, q) :: legs) r) with (after_low legs (slower r (d, q))).
+    replace (o + (d + total legs)) with (o + d + total legs) by ring.
+    assert (inside : forall t, o <= t <= o + d -> in_leg r d q (t - o) <= v t).
+    { intros t [? ?]. pose proof (below t ltac:(lra)) as B. cbn [low_at] in B. destruct (Rle_dec (t - o) d); [exact B | lra]. }
+    apply IH; auto.
+    + intros t [? ?]. destruct (Req_dec t (o + d)) as [-> | ne].
+      * replace (o + d - (o + d)) with 0 by ring. apply Rle_trans with (1 := low_at_first legs _ ord').
+        rewrite slower_speed by exact e0. replace d with (o + d - o) at 2 by ring. apply inside. lra.
+      * pose proof (below t ltac:(lra)) as B. cbn [low_at] in B. destruct (Rle_dec (t - o) d); [lra |].
+        replace (t - (o + d)) with (t - o - d) by ring. exact B.
+    + pose proof (one_leg_low r d q o (o + d) d0 ltac:(lra) ltac:(lra)) as L.
+      replace (o + d - o) with d in L by ring.
+      specialize (L ltac:(intros; apply inside; lra) f0 e0).
+      specialize (L ltac:(pose proof (inside o ltac:(lra)) as I; replace (o - o) with 0 in I by ring;
+                          rewrite in_leg_start in I; exact I)).
+      change (distance (slower r (d, q)))
+        with (distance r + Rmax ((speed (faded r (fade * d)) + in_leg r d q d) * d * (1 / 2)) 0).
+      assert (0 <= (speed (faded r (fade * d)) + in_leg r d q d) * d * (1 / 2)).
+      { apply Rmult_le_pos; [apply Rmult_le_pos; lra | lra]. }
+      rewrite Rmax_left; [lra | assumption].
+Qed.
+
+(* The bound grows no faster than the hardest leg, and not beyond the cap, or what it was. *)
+Lemma low_grows A legs : 0 <= A -> forall r, ordered legs -> goes_on r legs -> List.Forall (fun leg : R * R => snd leg <= A) legs ->
+  forall u w, 0 <= u <= w -> w <= total legs ->
+  low_at r legs w <= low_at r legs u + A * (w - u) /\ low_at r legs w <= Rmax cap (low_at r legs u).
+Proof.
+  intros A0. induction legs as [| [d q] legs IH]; intros r ord go hard u w [u0 uw] wt.
+  - cbn. assert (0 <= A * (w - u)) by (apply Rmult_le_pos; lra). split; [lra | apply Rmax_r].
+  - inversion ord as [| ? ? d0 ord']; subst. inversion hard as [| ? ? qA hard']; subst. cbn [fst snd total] in *.
+    destruct go as (f0 & e0 & go). pose proof (total_nonneg legs ord').
+    assert (leg : forall u w, 0 <= u <= w -> in_leg r d q w <= in_leg r d q u + A * (w - u) /\
+                    in_leg r d q w <= Rmax cap (in_leg r d q u)).
+    { intros a b [a0 ab]. pose proof (in_leg_rises r d q a b (conj a0 ab)) as R.
+      assert (q * (b - a) <= A * (b - a)) by (apply Rmult_le_compat_r; lra). split; [lra |].
+      unfold in_leg. set (f := speed (faded r (fade * d))). pose proof (Rmax_r cap f). pose proof (Rmax_l cap f).
+      destruct (Rle_dec 0 q).
+      - assert (0 <= q * a) by (apply Rmult_le_pos; lra). apply Rle_trans with (1 := Rmin_r _ _).
+        apply Rmax_lub; [apply Rmax_l |]. apply Rle_trans with (2 := Rmax_r _ _). apply Rmin_glb; lra.
+      - assert (q * b <= q * a) by nra. apply Rle_trans with (2 := Rmax_r _ _). apply Rle_min_compat_r. lra. }
+    cbn [low_at]. destruct (Rle_dec u d), (Rle_dec w d); try lra.
+    + apply leg; lra.
+    + destruct (leg u d ltac:(lra)) as [g1 g2].
+      destruct (IH (slower r (d, q)) ord' go hard' 0 (w - d) ltac:(lra) ltac:(lra)) as [i1 i2].
+      pose proof (low_at_first legs (slower r (d, q)) ord') as L. rewrite slower_speed in L by exact e0.
+      split; [replace (A * (w - u)) with (A * (w - d - 0) + A * (d - u)) by ring; lra |].
+      apply Rle_trans with (1 := i2). apply Rmax_lub; [apply Rmax_l |]. lra.
+    + replace (w - u) with (w - d - (u - d)) by ring. apply IH; auto; lra.
+Qed.
 End Departs.

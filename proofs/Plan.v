@@ -136,55 +136,6 @@ Proof.
   - assert (x * time <= 0) by nra. assert (x * rest_time <= 0) by nra. split; revert low; cases; lra.
 Qed.
 
-(* The time until the target: what until computes, as a ramp and a steady part. *)
-Lemma until_is r target :
-  0 <= speed r ->
-  let left := Rmax (target - distance r) 0 in
-  let C := Rmax (unheld k) (speed r) in
-  let V := snd (until r target (ego_go k) (unheld k)) in
-  exists ramp steady, fst (until r target (ego_go k) (unheld k)) = ramp + steady /\ 0 <= ramp /\ 0 <= steady /\
-    V = speed r + ego_go k * ramp /\ V <= C /\
-    (speed r + V) * ramp * (1 / 2) + C * steady = left /\ (0 < steady -> V = C).
-Proof.
-  intros rr0. cbn zeta. unfold until. cbn [fst snd].
-  set (left := Rmax (target - distance r) 0). set (C := Rmax (unheld k) (speed r)).
-  assert (g0 : 0 < ego_go k) by (destruct ok; lra).
-  assert (C0 : 0 < C /\ speed r <= C).
-  { split; [| apply Rmax_r]. apply Rlt_le_trans with (unheld k); [| apply Rmax_l].
-    pose proof (unheld_enough k ok). lra. }
-  assert (left0 : 0 <= left) by apply Rmax_r.
-  set (limit := (C - speed r) * (C + speed r) / (ego_go k + ego_go k)).
-  assert (L : limit * (2 * ego_go k) = C * C - speed r * speed r) by (unfold limit; field; lra).
-  assert (limit0 : 0 <= limit).
-  { unfold limit. apply Rmult_le_pos; [apply Rmult_le_pos; lra | left; apply Rinv_0_lt_compat; lra]. }
-  set (ramp_way := Rmin left limit).
-  assert (rw : 0 <= ramp_way /\ ramp_way <= left /\ ramp_way <= limit).
-  { unfold ramp_way. repeat split; [apply Rmin_glb; lra | apply Rmin_l | apply Rmin_r]. }
-  set (V := sqrt (speed r * speed r + (ego_go k + ego_go k) * ramp_way)).
-  assert (in0 : 0 <= speed r * speed r + (ego_go k + ego_go k) * ramp_way) by nra.
-  assert (V0 : 0 <= V) by apply sqrt_pos.
-  assert (VV : V * V = speed r * speed r + (ego_go k + ego_go k) * ramp_way) by (unfold V; apply sqrt_sqrt; exact in0).
-  assert (Vr : speed r <= V) by nra.
-  assert (VC : V <= C) by nra.
-  assert (x : Rmax (V - speed r) 0 = V - speed r) by (apply Rmax_left; lra). rewrite x.
-  exists ((V - speed r) / ego_go k), (Rmax (left - limit) 0 / C).
-  split; [reflexivity |].
-  split; [apply Rmult_le_pos; [lra | left; apply Rinv_0_lt_compat; lra] |].
-  split; [apply Rmult_le_pos; [apply Rmax_r | left; apply Rinv_0_lt_compat; lra] |].
-  split; [field; lra |]. split; [exact VC |].
-  assert (w : (speed r + V) * ((V - speed r) / ego_go k) * (1 / 2) = ramp_way).
-  { replace ((speed r + V) * ((V - speed r) / ego_go k) * (1 / 2))
-      with ((V * V - speed r * speed r) / (2 * ego_go k)) by (field; lra). rewrite VV. field. lra. }
-  rewrite w.
-  split.
-  - replace (C * (Rmax (left - limit) 0 / C)) with (Rmax (left - limit) 0) by (field; lra).
-    unfold ramp_way. cases; lra.
-  - intros st. assert (limit < left).
-    { destruct (Rle_dec left limit) as [e | ne]; [| lra]. rewrite (Rmax_right (left - limit) 0) in st by lra.
-      unfold Rdiv in st. rewrite Rmult_0_l in st. lra. }
-    assert (ramp_way = limit) by (unfold ramp_way; apply Rmin_right; lra). nra.
-Qed.
-
 (* By the clearing time the ego has gone the target, and is at least as fast as computed. Whenever it is somewhere on the
    way, it can become no faster than that in the time that is left. *)
 Lemma plan_clears target :
@@ -207,7 +158,7 @@ Proof.
   assert (p1 : 0 <= speed q1) by apply at_least_speed_nonneg.
   assert (p2 : 0 <= speed q2) by apply at_least_speed_nonneg.
   assert (p3 : 0 <= speed q3) by apply at_least_speed_nonneg.
-  destruct (until_is q3 target p3) as (ramp & steady & U & ra0 & st0 & V1 & V2 & W & V3).
+  destruct (until_is q3 target (ego_go k) (unheld k) g0 ltac:(pose proof (unheld_enough k ok); lra) p3) as (ramp & steady & U & ra0 & st0 & V1 & V2 & W & V3).
   rewrite U. set (V := snd (until q3 target (ego_go k) (unheld k))) in *.
   set (C := Rmax (unheld k) (speed q3)) in *.
   intros it.

@@ -324,3 +324,53 @@ Proof.
   apply Rmult_le_reg_r with (2 * a); [lra |]. rewrite P, Q.
   destruct (Rle_dec (v + a * x) C), (Rle_dec (w + a * x) D); nra.
 Qed.
+
+(** * until *)
+
+(* The time until the target: what until computes, as a ramp and a steady part. *)
+Lemma until_is r target g cap :
+  0 < g -> 0 < cap -> 0 <= speed r ->
+  let left := Rmax (target - distance r) 0 in
+  let C := Rmax cap (speed r) in
+  let V := snd (until r target g cap) in
+  exists ramp steady, fst (until r target g cap) = ramp + steady /\ 0 <= ramp /\ 0 <= steady /\
+    V = speed r + g * ramp /\ V <= C /\
+    (speed r + V) * ramp * (1 / 2) + C * steady = left /\ (0 < steady -> V = C).
+Proof.
+  intros g0 cap0 rr0. cbn zeta. unfold until. cbn [fst snd].
+  set (left := Rmax (target - distance r) 0). set (C := Rmax cap (speed r)).
+  assert (C0 : 0 < C /\ speed r <= C).
+  { split; [| apply Rmax_r]. apply Rlt_le_trans with cap; [| apply Rmax_l].
+    exact cap0. }
+  assert (left0 : 0 <= left) by apply Rmax_r.
+  set (limit := (C - speed r) * (C + speed r) / (g + g)).
+  assert (L : limit * (2 * g) = C * C - speed r * speed r) by (unfold limit; field; lra).
+  assert (limit0 : 0 <= limit).
+  { unfold limit. apply Rmult_le_pos; [apply Rmult_le_pos; lra | left; apply Rinv_0_lt_compat; lra]. }
+  set (ramp_way := Rmin left limit).
+  assert (rw : 0 <= ramp_way /\ ramp_way <= left /\ ramp_way <= limit).
+  { unfold ramp_way. repeat split; [apply Rmin_glb; lra | apply Rmin_l | apply Rmin_r]. }
+  set (V := sqrt (speed r * speed r + (g + g) * ramp_way)).
+  assert (in0 : 0 <= speed r * speed r + (g + g) * ramp_way) by nra.
+  assert (V0 : 0 <= V) by apply sqrt_pos.
+  assert (VV : V * V = speed r * speed r + (g + g) * ramp_way) by (unfold V; apply sqrt_sqrt; exact in0).
+  assert (Vr : speed r <= V) by nra.
+  assert (VC : V <= C) by nra.
+  assert (x : Rmax (V - speed r) 0 = V - speed r) by (apply Rmax_left; lra). rewrite x.
+  exists ((V - speed r) / g), (Rmax (left - limit) 0 / C).
+  split; [reflexivity |].
+  split; [apply Rmult_le_pos; [lra | left; apply Rinv_0_lt_compat; lra] |].
+  split; [apply Rmult_le_pos; [apply Rmax_r | left; apply Rinv_0_lt_compat; lra] |].
+  split; [field; lra |]. split; [exact VC |].
+  assert (w : (speed r + V) * ((V - speed r) / g) * (1 / 2) = ramp_way).
+  { replace ((speed r + V) * ((V - speed r) / g) * (1 / 2))
+      with ((V * V - speed r * speed r) / (2 * g)) by (field; lra). rewrite VV. field. lra. }
+  rewrite w.
+  split.
+  - replace (C * (Rmax (left - limit) 0 / C)) with (Rmax (left - limit) 0) by (field; lra).
+    unfold ramp_way. cases; lra.
+  - intros st. assert (limit < left).
+    { destruct (Rle_dec left limit) as [e | ne]; [| lra]. rewrite (Rmax_right (left - limit) 0) in st by lra.
+      unfold Rdiv in st. rewrite Rmult_0_l in st. lra. }
+    assert (ramp_way = limit) by (unfold ramp_way; apply Rmin_right; lra). nra.
+Qed.

@@ -278,7 +278,7 @@ proptest! {
     }
 }
 
-/// From rest, with the brakes on, a first command that is harder than `go` is followed later than `go` would be.
+/// From rest, with the brakes on: the first command, harder than `go`, is followed late, and the `go` after it at once.
 #[test]
 fn one_that_stands_is_no_farther_after_a_first_command_harder_than_go() {
     let contract = Contract::builder()
@@ -291,7 +291,7 @@ fn one_that_stands_is_no_farther_after_a_first_command_harder_than_go() {
         .build()
         .unwrap();
     let drivetrain = Drivetrain {
-        late: [1.0; 2],
+        late: [1.0, 0.0],
         lag: 1.0,
         off: [0.0; 2],
     };
