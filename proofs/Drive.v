@@ -188,6 +188,10 @@ Record drives (theta : R) (v x pull : R -> R) (tau c : nat -> R) : Prop := {
   rests_when_stopped : goes_with v x pull 0
 }.
 
+(* A3 of a drivetrain, but for the number of commands in flight, which may be any. *)
+Definition drivable := 0 < period k /\ 0 <= latency k /\ 0 <= jitter k /\ 0 < shortest_period k /\ 0 <= ego_lag k /\
+  0 <= ego_gain k <= 1 / 2 /\ 0 <= ego_disturbance k /\ 0 < ego_go k /\ 0 < weakest (ego_braking k).
+
 (* What is inherited, as the loop of the code sees it: for how long, after the part before it, which accelerations may act,
    and whether the next period has begun. *)
 Record part := { lasts : R; low : R; high : R; later : bool }.
@@ -212,8 +216,7 @@ Hypothesis m : motion s v.
 Hypothesis drive : drives theta v x pull tau c.
 Hypothesis grid : exists start, forall i,
   start + INR i * period k - jitter k <= tau i <= start + INR i * period k + jitter k.
-Hypothesis numbers : 0 < period k /\ 0 <= latency k /\ 0 <= jitter k /\ 0 < shortest_period k /\ 0 <= ego_lag k /\
-  0 <= ego_gain k <= 1 / 2 /\ 0 <= ego_disturbance k /\ 0 < ego_go k /\ 0 < weakest (ego_braking k).
+Hypothesis numbers : drivable.
 
 (* Of the plan whose first command is given at call S i, what is inherited there is true: from [o] after the call on, less the
    lag, no command given before leads to more or less; nor does the acceleration itself, until the lag after the call. *)
