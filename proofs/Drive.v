@@ -174,23 +174,19 @@ Qed.
 Section Drive.
 Variables (k : drivetrain).
 
-(* D14: to what a command leads, at most and at least. *)
-Definition strongest (a : R) := a + (ego_gain k * Rmax a (- a) + ego_disturbance k).
-Definition weakest (a : R) := a - (ego_gain k * Rmax a (- a) + ego_disturbance k).
-
 Record drives (theta : R) (v x pull : R -> R) (tau c : nat -> R) : Prop := {
   follows : lags theta x pull;
   constant_known : theta <= ego_lag k;
   pulls_up : forall t t' q, tau 1%nat <= t -> t <= t' ->
-    (forall j, tau j < t' -> t < tau (S j) + latency k -> strongest (c j) <= q) -> pull t' - pull t <= q * (t' - t);
+    (forall j, tau j < t' -> t < tau (S j) + latency k -> strongest k (c j) <= q) -> pull t' - pull t <= q * (t' - t);
   pulls_down : forall t t' q, tau 1%nat <= t -> t <= t' ->
-    (forall j, tau j < t' -> t < tau (S j) + latency k -> q <= weakest (c j)) -> q * (t' - t) <= pull t' - pull t;
+    (forall j, tau j < t' -> t < tau (S j) + latency k -> q <= weakest k (c j)) -> q * (t' - t) <= pull t' - pull t;
   rests_when_stopped : goes_with v x pull 0
 }.
 
 (* A3 of a drivetrain, but for the number of commands in flight, which may be any. *)
 Definition drivable := 0 < period k /\ 0 <= latency k /\ 0 <= jitter k /\ 0 < shortest_period k /\ 0 <= ego_lag k /\
-  0 <= ego_gain k <= 1 / 2 /\ 0 <= ego_disturbance k /\ 0 < ego_go k /\ 0 < weakest (ego_braking k).
+  0 <= ego_gain k <= 1 / 2 /\ 0 <= ego_disturbance k /\ 0 < ego_go k /\ 0 < weakest k (ego_braking k).
 
 (* What is inherited, as the loop of the code sees it: for how long, after the part before it, which accelerations may act,
    and whether the next period has begun. *)
@@ -198,18 +194,18 @@ Record part := { lasts : R; low : R; high : R; later : bool }.
 
 (* D14. *)
 Definition highest (a : R) (go : bool) (p : part) :=
-  let h := Rmax (high p) (strongest a) in
-  if (later p && go)%bool then Rmax h (strongest (ego_go k)) else h.
+  let h := Rmax (high p) (strongest k a) in
+  if (later p && go)%bool then Rmax h (strongest k (ego_go k)) else h.
 
 (* The legs of a plan from its call on: what is inherited; the rest of the first period, if that is not over; the response, or
    the period in which it certainly ends; n periods of go. *)
 Definition legs_up (a : R) (n : nat) (late_ : bool) (parts : list part) :=
   let go := match n with O => false | S _ => true end in
-  let last_ := if go then Rmax (strongest a) (strongest (ego_go k)) else strongest a in
+  let last_ := if go then Rmax (strongest k a) (strongest k (ego_go k)) else strongest k a in
   map (fun p => (lasts p, highest a go p)) parts ++
   (if late_ then (shortest_period k, last_) :: nil
-   else (shortest_period k - response k, strongest a) :: (response k, last_) :: nil) ++
-  (INR n * period k, strongest (ego_go k)) :: nil.
+   else (shortest_period k - response k, strongest k a) :: (response k, last_) :: nil) ++
+  (INR n * period k, strongest k (ego_go k)) :: nil.
 
 Variables (theta : R) (s v x pull : R -> R) (tau c : nat -> R).
 Hypothesis m : motion s v.
@@ -233,7 +229,7 @@ Fixpoint inherits (o : R) (parts : list part) : Prop :=
   | p :: rest =>
       0 <= lasts p /\ (later p = false -> o + lasts p <= sp) /\
       (forall j, (j <= i)%nat -> T + o - ego_lag k < tau (S j) + latency k ->
-         low p <= weakest (c j) /\ strongest (c j) <= high p) /\
+         low p <= weakest k (c j) /\ strongest k (c j) <= high p) /\
       (o < ego_lag k -> theta * low p <= pull T - x T <= theta * high p) /\
       inherits (o + lasts p) rest
   end.
@@ -245,10 +241,10 @@ Hypothesis goes_ : forall q, (q < count)%nat -> (q < n)%nat -> c (S (S i) + q)%n
 Hypothesis brakes_ : forall q, (q < count)%nat -> (n <= q)%nat -> c (S (S i) + q)%nat = - ego_braking k.
 Hypothesis planned : - ego_braking k <= a.
 
-Lemma strongest_grows p q : p <= q -> strongest p <= strongest q.
+Lemma strongest_grows p q : p <= q -> strongest k p <= strongest k q.
 Proof. intros. unfold strongest. destruct numbers as (_ & _ & _ & _ & _ & [? ?] & _). cases; nra. Qed.
 
-Lemma strongest_braking : strongest (- ego_braking k) = - weakest (ego_braking k).
+Lemma strongest_braking : strongest k (- ego_braking k) = - weakest k (ego_braking k).
 Proof. unfold strongest, weakest. rewrite Ropp_involutive, Rmax_comm. ring. Qed.
 
 Lemma spaced j q : tau j + INR q * period k - 2 * jitter k <= tau (j + q)%nat <= tau j + INR q * period k + 2 * jitter k.
@@ -269,10 +265,10 @@ Proof.
 Qed.
 
 Lemma pulled t t' q : T <= t -> t <= t' -> t' <= E ->
-  (forall j, (j <= i)%nat -> t < tau (S j) + latency k -> strongest (c j) <= q) ->
-  (t < T + sp + switching k -> strongest a <= q) ->
-  (n <> O -> T + sp < t' -> t < T + sp + INR n * period k + switching k -> strongest (ego_go k) <= q) ->
-  (T + sp + INR n * period k < t' -> - weakest (ego_braking k) <= q) ->
+  (forall j, (j <= i)%nat -> t < tau (S j) + latency k -> strongest k (c j) <= q) ->
+  (t < T + sp + switching k -> strongest k a <= q) ->
+  (n <> O -> T + sp < t' -> t < T + sp + INR n * period k + switching k -> strongest k (ego_go k) <= q) ->
+  (T + sp + INR n * period k < t' -> - weakest k (ego_braking k) <= q) ->
   pull t' - pull t <= q * (t' - t).
 Proof.
   intros lo le hi old now_ go brake. destruct numbers as (p0 & _).
@@ -292,20 +288,20 @@ Proof.
   assert (q0 : 0 <= INR q' * period k) by (apply Rmult_le_pos; [apply pos_INR | lra]).
   destruct (le_lt_dec n q') as [b | g].
   - rewrite J, brakes_, strongest_braking by assumption. apply brake. pose proof (mono n q' b). lra.
-  - apply Rle_trans with (strongest (ego_go k)).
+  - apply Rle_trans with (strongest k (ego_go k)).
     + apply strongest_grows. rewrite J. apply goes_; assumption.
     + pose proof (mono (S q') n g). apply go; [lia | lra | lra].
 Qed.
 
 Let r0 := start (sensed + speed_error k).
 Let legs := legs_up a n late_ parts.
-Let b := weakest (ego_braking k).
+Let b := weakest k (ego_braking k).
 Let end_ := T + total legs.
 
-Lemma last_brakes : - b <= strongest a.
+Lemma last_brakes : - b <= strongest k a.
 Proof. unfold b. rewrite <- strongest_braking. apply strongest_grows, planned. Qed.
 
-Lemma go_drives : - b <= strongest (ego_go k).
+Lemma go_drives : - b <= strongest k (ego_go k).
 Proof.
   unfold b. rewrite <- strongest_braking. apply strongest_grows.
   destruct numbers as (_ & _ & _ & _ & _ & [? ?] & ? & ? & w). unfold weakest in w. revert w. cases; nra.
@@ -342,16 +338,16 @@ Proof.
   destruct times as (sp0 & sw0 & rsd & lag0 & n0). pose proof last_brakes as lb. pose proof go_drives as gd. pose proof th0 as th.
   assert (goes_on_ : match n with O => false | S _ => true end = false -> n = O) by (destruct n; [auto | discriminate]).
   unfold legs, legs_up. change (shortest_period k) with sp. change (response k) with rs. set (go := match n with O => false | S _ => true end) in *.
-  set (last_ := if go then Rmax (strongest a) (strongest (ego_go k)) else strongest a).
-  assert (L : strongest a <= last_ /\ - b <= last_ /\ (go = true -> strongest (ego_go k) <= last_)).
+  set (last_ := if go then Rmax (strongest k a) (strongest k (ego_go k)) else strongest k a).
+  assert (L : strongest k a <= last_ /\ - b <= last_ /\ (go = true -> strongest k (ego_go k) <= last_)).
   { unfold last_. destruct go; repeat split; try (intros; discriminate); try lra; try apply Rmax_l; try (intros; apply Rmax_r).
     apply Rle_trans with (1 := lb), Rmax_l. }
   assert (ngo : go = false -> INR n * period k = 0) by (intros e; rewrite (goes_on_ e); simpl; ring).
   assert (tail : forall o, o = rs -> legs_ok o
-    ((if late_ then (sp, last_) :: nil else (sp - rs, strongest a) :: (rs, last_) :: nil) ++
-     (INR n * period k, strongest (ego_go k)) :: nil)).
+    ((if late_ then (sp, last_) :: nil else (sp - rs, strongest k a) :: (rs, last_) :: nil) ++
+     (INR n * period k, strongest k (ego_go k)) :: nil)).
   { intros o ->.
-    assert (final : forall o, o = sp + rs -> leg_ok o (INR n * period k, strongest (ego_go k))).
+    assert (final : forall o, o = sp + rs -> leg_ok o (INR n * period k, strongest k (ego_go k))).
     { intros o ->. split; [exact n0 |]. split; [exact gd |]. cbn [fst snd]. split; [| lra].
       intros t t' ? ? ? ? ?. apply pulled; auto; try lra. intros j ? ?. exfalso. apply (old_gone t j); lra || auto. }
     assert (drop : forall t t' o d, T <= t -> T + o - ego_lag k <= t -> t <= t' -> t' <= T + o + d -> t' <= E ->
@@ -359,7 +355,7 @@ Proof.
     { intros t t' o d ? ? ? ? ? ?. destruct L as (L1 & L2 & L3). apply pulled; auto; try lra.
       - intros j ? ?. exfalso. apply (old_gone t j); lra || auto.
       - intros nz _ _. apply L3. unfold go. destruct n; [lia | reflexivity]. }
-    assert (n_ok : leg_ok (sp + rs) (INR n * period k, strongest (ego_go k))) by (apply final; reflexivity).
+    assert (n_ok : leg_ok (sp + rs) (INR n * period k, strongest k (ego_go k))) by (apply final; reflexivity).
     destruct late_; cbn [app legs_ok fst].
     - split; [| split; [replace (rs + sp) with (sp + rs) by ring; exact n_ok | exact I]].
       split; [cbn; lra |]. split; [apply L |]. cbn [fst snd]. split; [| lra].
@@ -372,13 +368,13 @@ Proof.
       + split; [cbn; lra |]. split; [apply L |]. cbn [fst snd]. split; [| lra].
         intros t t' ? ? ? ? ?. apply (drop t t' sp rs); auto. }
   assert (all : forall ps o, inherits o ps -> 0 <= o -> legs_ok o (map (fun p => (lasts p, highest a go p)) ps ++
-    ((if late_ then (sp, last_) :: nil else (sp - rs, strongest a) :: (rs, last_) :: nil) ++
-     (INR n * period k, strongest (ego_go k)) :: nil))).
+    ((if late_ then (sp, last_) :: nil else (sp - rs, strongest k a) :: (rs, last_) :: nil) ++
+     (INR n * period k, strongest k (ego_go k)) :: nil))).
   { induction ps as [| p ps IH]; intros o inh o0; cbn [map app]; [apply tail; exact inh |].
     destruct inh as (d0 & early & old & acc & more). cbn [legs_ok fst].
     split; [| apply IH; [exact more | lra]].
-    assert (H : high p <= highest a go p /\ strongest a <= highest a go p /\
-                (later p = true -> go = true -> strongest (ego_go k) <= highest a go p)).
+    assert (H : high p <= highest a go p /\ strongest k a <= highest a go p /\
+                (later p = true -> go = true -> strongest k (ego_go k) <= highest a go p)).
     { unfold highest. destruct (later p), go; cbn; repeat split; intros; try discriminate; cases; lra. }
     destruct H as (h1 & h2 & top). assert (h3 : - b <= highest a go p) by lra.
     split; [exact d0 |]. split; [exact h3 |]. cbn [fst snd]. split.

@@ -106,3 +106,48 @@ Definition earliest_rest (k : contract) (v : R) : R :=
 Definition most_command (k : contract) (sensed in_effect : R) : R :=
   let x0 := ego_max_speed k - sensed - speed_error k in
   Rmin (Rmax 0 (Rmin ((x0 - Rmax 0 in_effect * switching k) / period k) (x0 / (period k + switching k)))) (ego_acceleration k).
+
+Definition strongest (k : drivetrain) (command : R) : R :=
+  command + (ego_gain k * Rmax command (Ropp command) + ego_disturbance k).
+
+Definition weakest (k : drivetrain) (command : R) : R :=
+  command - (ego_gain k * Rmax command (Ropp command) + ego_disturbance k).
+
+Definition fading (from : reach) (cap loss : R) : reach :=
+  {| distance := distance from; speed := Rmin (speed from) (Rmax cap (speed from - loss)) |}.
+
+Definition sinking (from : reach) (acceleration cap time floor : R) : reach :=
+  let x0 := Rmin (speed from + acceleration * time) (Rmax cap (speed from)) in
+  {| distance := distance from + Rmax ((speed from + x0) * time * (1 / 2)) 0; speed := Rmax x0 floor |}.
+
+Definition unlimited_driven (k : drivetrain) : R :=
+  ego_max_speed k - speed_error k - speed_error k - (strongest k (ego_acceleration k) + strongest k (ego_emergency k)) * response k - strongest k (ego_go k) * period k - (ego_disturbance k + ego_disturbance k) / (1 - ego_gain k) * period k.
+
+Definition hold (k : drivetrain) (least most : R) : R :=
+  let x0 := Rmax 0 (Ropp least) in
+  Ropp (ego_lag k * x0 / sqrt (1 + x0 / most)).
+
+Definition departure_soon (k : drivetrain) (sensed first low1 high1 low2 high2 command : R) : departs :=
+  let b := (at_most (at_most (start (sensed + speed_error k)) (Rmax high1 (strongest k command)) first) (Rmax high2 (strongest k command)) (response k - first)) in
+  let f := hold k (Rmin low1 (weakest k command)) (Rmax (weakest k command) (weakest k (ego_go k))) in
+  let s r q t := sinking (fading r (unlimited_driven k) ((ego_disturbance k + ego_disturbance k) / (1 - ego_gain k) * t)) q (unlimited_driven k) t f in
+  let left := shortest_period k - first - (response k - first) in
+  {| braking := at_most (at_most b (strongest k command) left) (strongest k command) (response k);
+     most := at_most (at_most b (strongest k command) left) (Rmax (strongest k command) (strongest k (ego_go k))) (response k);
+     least := s (s (s (s (start (sensed - speed_error k)) (Rmin low1 (weakest k command)) first) (Rmin low2 (weakest k command)) (response k - first)) (weakest k command) left) (Rmin (weakest k command) (weakest k (ego_go k))) (response k) |}.
+
+Definition departure_late (k : drivetrain) (sensed first low1 high1 low2 high2 command : R) : departs :=
+  let b0 := at_most (at_most (start (sensed + speed_error k)) (Rmax high1 (strongest k command)) first) (Rmax high2 (strongest k command)) (shortest_period k - first) in
+  let f := hold k (Rmin low1 (weakest k command)) (Rmax (weakest k command) (weakest k (ego_go k))) in
+  let s r q t := sinking (fading r (unlimited_driven k) ((ego_disturbance k + ego_disturbance k) / (1 - ego_gain k) * t)) q (unlimited_driven k) t f in
+  {| braking := at_most (at_most b0 (Rmax high2 (strongest k command)) (response k - shortest_period k)) (strongest k command) (shortest_period k);
+     most := at_most (at_most b0 (Rmax (Rmax high2 (strongest k command)) (strongest k (ego_go k))) (response k - shortest_period k)) (Rmax (strongest k command) (strongest k (ego_go k))) (shortest_period k);
+     least := s (s (s (s (start (sensed - speed_error k)) (Rmin low1 (weakest k command)) first) (Rmin low2 (weakest k command)) (shortest_period k - first)) (Rmin (Rmin low2 (weakest k command)) (weakest k (ego_go k))) (response k - shortest_period k)) (Rmin (weakest k command) (weakest k (ego_go k))) (shortest_period k) |}.
+
+Definition clearing_driven (k : drivetrain) (from : reach) (target : R) : R * R :=
+  let f := fading from (unlimited_driven k) ((ego_disturbance k + ego_disturbance k) / (1 - ego_gain k) * (Rmax (target - distance from) 0 / unlimited_driven k)) in
+  let u := until {| distance := distance f; speed := Rmax (speed f) 0 |} target (weakest k (ego_go k)) (unlimited_driven k) in
+  (Rmax 0 (Ropp (speed f)) / weakest k (ego_go k) + fst u + shortest_period k + response k, snd u).
+
+Definition rest_driven (k : drivetrain) (from : reach) (time : R) : R :=
+  rest_of (at_most from (strongest k (ego_go k)) time) (weakest k (ego_braking k)).

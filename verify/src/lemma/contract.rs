@@ -26,6 +26,7 @@ pub(super) fn any_contract() -> Contract {
         other_braking,
         reaction,
         follower_braking,
+        ..
     ] = stand_ins();
     let symbols = Contract::builder()
         .period(period)
@@ -42,6 +43,18 @@ pub(super) fn any_contract() -> Contract {
         .other_braking(other_braking)
         .follower_reaction(reaction)
         .follower_braking(follower_braking);
+    unchecked(symbols)
+}
+
+/// The same with a drivetrain that is not exact; its lag is a number.
+pub(super) fn any_drivetrain(lag: f32) -> Contract {
+    let [.., emergency, gain, disturbance] = stand_ins();
+    let symbols = any_contract()
+        .to_builder()
+        .ego_emergency(emergency)
+        .ego_gain(gain)
+        .ego_disturbance(disturbance)
+        .ego_lag(lag);
     unchecked(symbols)
 }
 

@@ -1,10 +1,10 @@
 //! The bounds and margins as definitions for Rocq, printed from the code that flies: `proofs/` is about these.
 
-use super::contract::any_contract;
+use super::contract::{any_contract, any_drivetrain};
 use super::formula::whole_over;
 use super::term::{Node, Term};
 use cede_controller::dangerous::unchecked;
-use cede_controller::shield::actuation::Inherited;
+use cede_controller::shield::actuation::{Inherited, hold, strongest, weakest};
 use cede_controller::shield::margin::Departure;
 use cede_controller::shield::reach::Reach;
 use cede_controller::shield::{Contract, choice, margin};
@@ -103,7 +103,78 @@ pub fn shipped() -> String {
         "most_command (k : contract) (sensed in_effect : R) : R",
         &choice::most(k, sensed, named("in_effect")),
     );
-    file.text
+    file.text + &of_a_drivetrain()
+}
+
+/// The same of a drivetrain that is late and not exact. What is inherited has two parts: the response is over in the first
+/// period, or the second part is divided by the end of it.
+fn of_a_drivetrain() -> String {
+    const FIRST: f32 = 0.082_364_1;
+    let k = &drivetrain(0.119_202_9);
+    let mut file = File::of_drivetrain(k, FIRST);
+    let from = Reach {
+        distance: named("distance from"),
+        speed: named("speed from"),
+    };
+    let [command, sensed, time, target] = ["command", "sensed", "time", "target"].map(named);
+    file.define(
+        "strongest (k : drivetrain) (command : R) : R",
+        &strongest(k, command),
+    );
+    file.define(
+        "weakest (k : drivetrain) (command : R) : R",
+        &weakest(k, command),
+    );
+    file.define(
+        "fading (from : reach) (cap loss : R) : reach",
+        &from.fading(named("cap"), named("loss")),
+    );
+    file.define(
+        "sinking (from : reach) (acceleration cap time floor : R) : reach",
+        &from.sinking(named("acceleration"), named("cap"), time, named("floor")),
+    );
+    file.define(
+        "unlimited_driven (k : drivetrain) : R",
+        &margin::unlimited::<Term>(k),
+    );
+    file.define(
+        "hold (k : drivetrain) (least most : R) : R",
+        &hold(k, named("least"), named("most")),
+    );
+    let departs = |k: &Contract| {
+        let mut inherited = Inherited::all(k, ["low2", "high2"].map(named));
+        inherited.prepend(FIRST, ["low1", "high1"].map(named));
+        margin::departure(k, sensed, &inherited, command)
+    };
+    let signature = "(k : drivetrain) (sensed first low1 high1 low2 high2 command : R) : departs";
+    file.define(&format!("departure_soon {signature}"), &departs(k));
+    file.define(
+        "clearing_driven (k : drivetrain) (from : reach) (target : R) : R * R",
+        &margin::clearing(k, from, target),
+    );
+    file.define(
+        "rest_driven (k : drivetrain) (from : reach) (time : R) : R",
+        &margin::rest(k, from, time),
+    );
+    file.define(
+        "safe_gap_driven (k : drivetrain) (v ego_v : R) : R",
+        &margin::safe_gap(k, named("v"), named("ego_v")),
+    );
+    let late = &drivetrain(0.907_202_9);
+    let mut last = File::of_drivetrain(late, FIRST);
+    last.define(&format!("departure_late {signature}"), &departs(late));
+    file.text + &last.text
+}
+
+/// A contract with such a drivetrain, whose times are known by their numbers.
+fn drivetrain(latency: f32) -> Contract {
+    let builder = any_drivetrain(0.071_313_7).to_builder();
+    unchecked(
+        builder
+            .period(0.731_058_6)
+            .latency(latency)
+            .jitter(0.017_986_2),
+    )
 }
 
 /// A contract with jitter. The code computes its two times in `f32`, where symbols are of no use: here they are numbers
@@ -129,6 +200,25 @@ struct File {
 }
 
 impl File {
+    /// Without a head. `first`: until when the first part of what is inherited acts.
+    fn of_drivetrain(k: &Contract, first: f32) -> Self {
+        let (period, response) = (k.shortest_period(), k.response());
+        let times = [
+            (k.period(), "period k"),
+            (period, "shortest_period k"),
+            (response, "response k"),
+            (k.ego().lag, "ego_lag k"),
+            (first, "first"),
+            (response - first, "(response k - first)"),
+            (period - first, "(shortest_period k - first)"),
+            (response - period, "(response k - shortest_period k)"),
+        ];
+        Self {
+            text: String::new(),
+            times: times.map(|(time, name)| (time.to_bits(), name)).into(),
+        }
+    }
+
     fn new(k: &Contract) -> Self {
         let times = [
             (k.period(), "period k"),

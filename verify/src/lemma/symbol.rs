@@ -15,7 +15,7 @@ pub(crate) struct Symbol {
 /// A quiet NaN; the low bits number the symbol.
 const STAND_IN: u32 = 0x7fc0_0000;
 
-const COUNT: usize = 14;
+const COUNT: usize = 17;
 
 /// The numbers of a contract.
 const SYMBOLS: [Symbol; COUNT] = [
@@ -33,6 +33,9 @@ const SYMBOLS: [Symbol; COUNT] = [
     named("other.braking", "m/s²"),
     named("follower.reaction", "s"),
     named("follower.braking", "m/s²"),
+    named("ego.emergency", "m/s²"),
+    named("ego.gain", ""),
+    named("ego.disturbance", "m/s²"),
 ];
 
 const fn named(name: &'static str, unit: &'static str) -> Symbol {
@@ -45,7 +48,7 @@ pub(super) fn stands_for(value: f32) -> Option<Symbol> {
     SYMBOLS.get(usize::try_from(number).ok()?).copied()
 }
 
-/// A stand-in for each number of a contract, in the order of its fields.
+/// A stand-in for each number of a contract; those of an inexact drivetrain are the last three.
 pub(super) fn stand_ins() -> [f32; COUNT] {
     std::array::from_fn(|i| f32::from_bits(STAND_IN + i as u32))
 }

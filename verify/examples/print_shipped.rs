@@ -1,0 +1,1 @@
+fn main() { print!("{}", cede_verify::lemma::shipped()); }
