@@ -1,5 +1,5 @@
 (* What every theorem rests on: check.sh compares it with axioms.txt. *)
-Require Import Ego Shield Merge Pair Choice Limit Precedence Turns Order Yield Newer Controls Passage Turned.
+Require Import Ego Shield Merge Pair Choice Limit Precedence Turns Order Yield Newer Lag Driven Controls Passage Turned.
 Print Assumptions verified_plans_keep_apart.
 Print Assumptions at_most_one_comes_in_ahead.
 Print Assumptions shielded_vehicles_keep_apart.
@@ -21,6 +21,10 @@ Print Assumptions never_both_sides.
 Print Assumptions precedence_is_safe_at_crossings.
 Print Assumptions one_claim_is_newer.
 Print Assumptions precedence_is_safe_by_counts.
+Print Assumptions lag_is_a_delay.
+Print Assumptions plan_of_a_drivetrain_stops.
+Print Assumptions plan_of_a_drivetrain_clears.
+Print Assumptions lag_must_be_counted.
 Print Assumptions conditions_can_be_met.
 Print Assumptions a_passage_can_be_verified.
 Print Assumptions C6_is_needed.
