@@ -37,20 +37,17 @@ Definition departure_driven : departs :=
     least := low_leg (low_leg l weak left) (Rmin weak go_least) (response k) |}.
 End Driven.
 
-(* It is what the code computes, for what is inherited in two parts. *)
-Lemma departure_soon_is k sensed first low1 high1 low2 high2 a :
-  departure_soon k sensed first low1 high1 low2 high2 a =
-  departure_driven k sensed false
-    ({| lasts := first; low := low1; high := high1; later := false |} ::
-     {| lasts := response k - first; low := low2; high := high2; later := false |} :: nil) a.
+(* It is what the code computes, for what is inherited in one part, which the end of the period may divide. *)
+Lemma departure_soon_is k sensed lo hi a :
+  departure_soon k sensed lo hi a =
+  departure_driven k sensed false ({| lasts := response k; low := lo; high := hi; later := false |} :: nil) a.
 Proof. reflexivity. Qed.
 
-Lemma departure_late_is k sensed first low1 high1 low2 high2 a :
-  departure_late k sensed first low1 high1 low2 high2 a =
+Lemma departure_late_is k sensed lo hi a :
+  departure_late k sensed lo hi a =
   departure_driven k sensed true
-    ({| lasts := first; low := low1; high := high1; later := false |} ::
-     {| lasts := shortest_period k - first; low := low2; high := high2; later := false |} ::
-     {| lasts := response k - shortest_period k; low := low2; high := high2; later := true |} :: nil) a.
+    ({| lasts := shortest_period k; low := lo; high := hi; later := false |} ::
+     {| lasts := response k - shortest_period k; low := lo; high := hi; later := true |} :: nil) a.
 Proof. reflexivity. Qed.
 
 Lemma fold_map {A B C} (f : A -> B -> A) (h : C -> B) l : forall r,

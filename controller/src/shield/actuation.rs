@@ -45,7 +45,7 @@ impl<R: Real> Inherited<R> {
     }
 
     /// Until `end` (s from now), before all parts that are known, accelerations between `bounds` (m/s²).
-    pub fn prepend(&mut self, end: f32, bounds: [R; 2]) {
+    fn prepend(&mut self, end: f32, bounds: [R; 2]) {
         if end > 0.0 || end.is_nan() {
             // `PARTS` are enough.
             let _ = self.parts.push((end, bounds));

@@ -106,12 +106,11 @@ pub fn shipped() -> String {
     file.text + &of_a_drivetrain()
 }
 
-/// The same of a drivetrain that is late and not exact. What is inherited has two parts: the response is over in the first
-/// period, or the second part is divided by the end of it.
+/// The same of a drivetrain that is late and not exact: the response is over in the first period, or what is inherited is
+/// divided by the end of it.
 fn of_a_drivetrain() -> String {
-    const FIRST: f32 = 0.082_364_1;
     let k = &drivetrain(0.119_202_9);
-    let mut file = File::of_drivetrain(k, FIRST);
+    let mut file = File::of_drivetrain(k);
     let from = Reach {
         distance: named("distance from"),
         speed: named("speed from"),
@@ -142,11 +141,10 @@ fn of_a_drivetrain() -> String {
         &hold(k, named("least"), named("most")),
     );
     let departs = |k: &Contract| {
-        let mut inherited = Inherited::all(k, ["low2", "high2"].map(named));
-        inherited.prepend(FIRST, ["low1", "high1"].map(named));
+        let inherited = Inherited::all(k, ["lowest", "highest"].map(named));
         margin::departure(k, sensed, &inherited, command)
     };
-    let signature = "(k : drivetrain) (sensed first low1 high1 low2 high2 command : R) : departs";
+    let signature = "(k : drivetrain) (sensed lowest highest command : R) : departs";
     file.define(&format!("departure_soon {signature}"), &departs(k));
     file.define(
         "clearing_driven (k : drivetrain) (from : reach) (target : R) : R * R",
@@ -161,7 +159,7 @@ fn of_a_drivetrain() -> String {
         &margin::safe_gap(k, named("v"), named("ego_v")),
     );
     let late = &drivetrain(0.907_202_9);
-    let mut last = File::of_drivetrain(late, FIRST);
+    let mut last = File::of_drivetrain(late);
     last.define(&format!("departure_late {signature}"), &departs(late));
     file.text + &last.text
 }
@@ -200,17 +198,14 @@ struct File {
 }
 
 impl File {
-    /// Without a head. `first`: until when the first part of what is inherited acts.
-    fn of_drivetrain(k: &Contract, first: f32) -> Self {
+    /// Without a head.
+    fn of_drivetrain(k: &Contract) -> Self {
         let (period, response) = (k.shortest_period(), k.response());
         let times = [
             (k.period(), "period k"),
             (period, "shortest_period k"),
             (response, "response k"),
             (k.ego().lag, "ego_lag k"),
-            (first, "first"),
-            (response - first, "(response k - first)"),
-            (period - first, "(shortest_period k - first)"),
             (response - period, "(response k - shortest_period k)"),
         ];
         Self {
