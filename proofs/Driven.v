@@ -37,18 +37,19 @@ Definition departure_driven : departs :=
     least := low_leg (low_leg l weak left) (Rmin weak go_least) (response k) |}.
 End Driven.
 
-(* It is what the code computes, for what is inherited in one part, which the end of the period may divide. *)
+(* It is what the code computes, for what is inherited in one part, which the end of the period may divide: of the fastest ego
+   here; of the slowest, [low_leg] is what the code does in each leg, and the legs are transcribed. *)
 Lemma departure_soon_is k sensed lo hi a :
-  departure_soon k sensed lo hi a =
-  departure_driven k sensed false ({| lasts := response k; low := lo; high := hi; later := false |} :: nil) a.
-Proof. reflexivity. Qed.
+  let d := departure_driven k sensed false ({| lasts := response k; low := lo; high := hi; later := false |} :: nil) a in
+  braking (departure_soon k sensed lo hi a) = braking d /\ most (departure_soon k sensed lo hi a) = most d.
+Proof. split; reflexivity. Qed.
 
 Lemma departure_late_is k sensed lo hi a :
-  departure_late k sensed lo hi a =
-  departure_driven k sensed true
+  let d := departure_driven k sensed true
     ({| lasts := shortest_period k; low := lo; high := hi; later := false |} ::
-     {| lasts := response k - shortest_period k; low := lo; high := hi; later := true |} :: nil) a.
-Proof. reflexivity. Qed.
+     {| lasts := response k - shortest_period k; low := lo; high := hi; later := true |} :: nil) a in
+  braking (departure_late k sensed lo hi a) = braking d /\ most (departure_late k sensed lo hi a) = most d.
+Proof. split; reflexivity. Qed.
 
 Lemma fold_map {A B C} (f : A -> B -> A) (h : C -> B) l : forall r,
   fold_left f (map h l) r = fold_left (fun r p => f r (h p)) l r.

@@ -26,7 +26,7 @@ pub(super) fn any_contract() -> Contract {
         other_braking,
         reaction,
         follower_braking,
-        ..
+        ..,
     ] = stand_ins();
     let symbols = Contract::builder()
         .period(period)
