@@ -40,8 +40,10 @@ impl<const N: usize, R: Rules> Shield<'_, N, R> {
         let acts = (inherited, inherited.bounds()[1]);
         let (context, known) = ((&self.contract, self.way), (ego, &self.tracks));
         let mut hazards = Hazards::new();
-        let scene = Scene::new::<N, R>(context, known, findings.closed, acts, &mut hazards);
+        let mut scene = Scene::new::<N, R>(context, known, findings.closed, acts, &mut hazards);
         self.verify_again(&scene, now, deviated || recheck);
+        let goes = self.memory.plan().is_some_and(|plan| plan.go > 0);
+        scene.wait_at_line::<R>(&self.contract, self.way, goes);
         let breach = if deviated {
             Some(Breach::Ego)
         } else {

@@ -19,7 +19,7 @@ const NOSE: f32 = 0.5;
 /// The hazards ahead of the ego, and what it may command.
 pub(super) struct Scene<'s> {
     pub(super) ego: &'s Own,
-    pub(super) hazards: &'s Hazards,
+    pub(super) hazards: &'s mut Hazards,
     /// What acts until the command is followed.
     pub(super) inherited: &'s Inherited<f32>,
     /// The hardest acceleration that may be commanded.
@@ -38,13 +38,24 @@ impl<'s> Scene<'s> {
     ) -> Self {
         hazards.add::<N, R>(contract, way, (ego, tracks), closed);
         let most = most(contract, ego.speed, in_effect);
-        wait_at_line::<R>(contract, way, ego, (inherited, most), hazards);
         Self {
             ego,
             hazards,
             inherited,
             most,
         }
+    }
+
+    /// Has the ego wait at its line, if the junction was told it. `goes`: what is left of the plan in force does not brake yet.
+    pub(super) fn wait_at_line<R: Rules>(&mut self, contract: &Contract, way: Way<'_>, goes: bool) {
+        let Some(path) = way.path(way.ego()).filter(|path| path.waits_at_line()) else {
+            return;
+        };
+        let brakes = allowed(&contract.ego, self.most, -contract.ego.braking);
+        let departure = R::departure(contract, self.ego.speed, self.inherited, brakes);
+        let stop = R::rest(contract, departure.braking, 0.0) + contract.slack;
+        let line = path.line() - self.ego.s - contract.position_error;
+        self.hazards.wait_at(line, stop, goes);
     }
 
     /// The best plan after one period at `command`.
@@ -80,21 +91,4 @@ impl<'s> Scene<'s> {
                 }
             })
     }
-}
-
-/// Has the ego wait at its line, if the junction was told it.
-fn wait_at_line<R: Rules>(
-    contract: &Contract,
-    way: Way<'_>,
-    ego: &Own,
-    (inherited, most): (&Inherited<f32>, f32),
-    hazards: &mut Hazards,
-) {
-    let Some(path) = way.path(way.ego()).filter(|path| path.waits_at_line()) else {
-        return;
-    };
-    let brakes = allowed(&contract.ego, most, -contract.ego.braking);
-    let departure = R::departure(contract, ego.speed, inherited, brakes);
-    let stop = R::rest(contract, departure.braking, 0.0) + contract.slack;
-    hazards.wait_at(path.line() - ego.s - contract.position_error, stop);
 }
