@@ -3,6 +3,7 @@
 use super::actuation::Inherited;
 use super::choice::{allowed, most};
 use super::contract::Contract;
+use super::decide::next;
 use super::hazard::{Hazard, Passage};
 use super::hazards::Hazards;
 use super::margin;
@@ -10,8 +11,9 @@ use super::own::Own;
 use super::rules::Rules;
 use super::tracks::Tracks;
 use super::unwatched::Closed;
-use super::verified::{Verified, best, passage_margin};
+use super::verified::{Verified, best, passage_margin, spare};
 use crate::junction::Way;
+use crate::plan::Plan;
 
 /// An ego without a safe plan that is less than this (m) in a zone stays there.
 const NOSE: f32 = 0.5;
@@ -46,7 +48,21 @@ impl<'s> Scene<'s> {
         }
     }
 
-    /// Has the ego wait at its line, if the junction was told it. `goes`: what is left of the plan in force does not brake yet.
+    /// Tells of each hazard whether what is left of `plan`, carried on, is safe from it.
+    pub(super) fn holds<R: Rules>(
+        &self,
+        contract: &Contract,
+        plan: Plan,
+    ) -> impl Fn(&Hazard) -> bool {
+        let command = allowed(&contract.ego, self.most, next(contract, plan));
+        let departure = R::departure(contract, self.ego.speed, self.inherited, command);
+        // A part of the slack is for what rounding has taken since the plan was verified.
+        let rounding = 0.2 * contract.slack;
+        move |hazard| R::keeps(spare::<R>(contract, hazard, &departure, R::tail(plan)) + rounding)
+    }
+
+    /// Has the ego wait at its line, if the junction was told it. `goes`: the plan in force does not brake yet, and
+    /// holds against everybody.
     pub(super) fn wait_at_line<R: Rules>(&mut self, contract: &Contract, way: Way<'_>, goes: bool) {
         let Some(path) = way.path(way.ego()).filter(|path| path.waits_at_line()) else {
             return;
