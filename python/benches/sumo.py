@@ -14,7 +14,7 @@ from test_sumo import netconvert
 from cede.sumo import Bridge, Network, Settings
 from cede.sumo._network import TYPES
 
-DEMANDS = (60.0, 200.0, 300.0)
+DEMANDS = (100.0, 200.0, 300.0)
 SHARES = (0.5, 1.0)
 SECONDS = 300.0
 SEEDS = (0, 1)

@@ -145,6 +145,18 @@ def test_nobody_is_stuck_where_the_policy_drives_everybody(tmp_path, kind):
     is_through(netconvert(tmp_path, kind), "cede", 0.95)
 
 
+@pytest.mark.parametrize(
+    ("kind", "seed"), [("priority", 4), ("priority_stop", 4), ("priority_stop", 5)]
+)
+def test_nobody_stops_where_others_have_to_pass(tmp_path, kind, seed):
+    """Turning vehicles that came to rest among the zones kept each other, and all others, waiting."""
+    summary = run(netconvert(tmp_path, kind), time=300.0, demand=200.0, seed=seed)
+    assert (summary["collisions"], summary["stuck"]) == (0, 0)
+    # In the bend no plan had to make up for a driver that is slower.
+    assert summary["lateral_acceleration_max"] < 4.0
+    assert summary["no_plan_share"] < 0.001
+
+
 def test_who_is_behind_another_is_told_if_it_may_take_another_way(tmp_path):
     routes = tmp_path / "r.rou.xml"
     vehicle = '<vehicle id="{}" depart="{}" departSpeed="8"><route edges="{}"/></vehicle>'

@@ -53,7 +53,8 @@ struct Wanted {
     first: f32,
     /// With nobody left to meet.
     free: f32,
-    /// The policy is asked from where stopping at the line takes more braking than this.
+    /// The policy is asked from where stopping at the line takes more braking than this, up to the line; always, if it
+    /// is 0.
     gentle: f32,
 }
 
@@ -161,8 +162,8 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
 
     /// [`Approach::decide`] for a vehicle that has a driver of its own for everything but the others at the junction, of
     /// its speed limit, curves and leader for example: no more than `most` (m/s²) is proposed, and `most` where nobody is
-    /// left to meet who goes first, or while braking at [`GENTLE`] still stops the ego at its line. NaN counts as full
-    /// braking.
+    /// left to meet who goes first, while braking at [`GENTLE`] still stops the ego at its line, and past the line: whoever
+    /// has entered leaves the junction. NaN counts as full braking.
     pub fn decide_up_to(
         &mut self,
         now: Instant,
@@ -212,11 +213,13 @@ impl<'j, 'w, const N: usize> Approach<'j, 'w, N> {
         }
     }
 
-    /// Whether the ego has to brake by more than `gentle` (m/s²) to stop at its line, or is past it.
+    /// Whether the ego has to brake by more than `gentle` (m/s²) to stop at its line, and is not past it. Without `gentle`
+    /// braking it always is.
     fn is_near(&self, ego: &Vehicle, gentle: f32) -> bool {
         let way = self.shield.way();
         let line = way.path(way.ego()).map_or(0.0, Path::line);
-        ego.speed * ego.speed >= 2.0 * gentle * (line - ego.s)
+        let braking = ego.speed * ego.speed >= 2.0 * gentle * (line - ego.s);
+        gentle == 0.0 || braking && ego.s <= line
     }
 
     /// What the policy alone would do (m/s², within ± 3): to measure what the shield costs, never to drive.

@@ -48,7 +48,7 @@ impl<const N: usize, R: Rules> Shield<'_, N, R> {
             Some((acceleration, verified)) => {
                 self.memory.verified(verified.plan, now);
                 self.tracks.unwatched_avoided();
-                self.count_on(scene.hazards, verified);
+                self.count_on(&*scene.hazards, verified);
                 acceleration
             }
             None if !planned && scene.leaves::<R>(&contract) => {

@@ -115,14 +115,17 @@ impl Hazards {
 
     /// The ego waits at its line, `line` metres ahead, for everybody but those that it follows: inside the junction it
     /// would be in the way of others. It comes to rest `stop` metres ahead at the earliest; once that is too far beyond
-    /// the line, it is on its way.
-    pub(super) fn wait_at(&mut self, line: f32, stop: f32) {
-        if stop > line + BEYOND {
-            return;
-        }
+    /// the line, it is on its way. As long as the plan in force `goes`, it is not given up there for one that rests
+    /// inside.
+    pub(super) fn wait_at(&mut self, line: f32, stop: f32, goes: bool) {
+        let rest = match stop > line + BEYOND {
+            true if goes => line,
+            true => return,
+            false => Real::max(line, stop),
+        };
         for hazard in &mut self.sorted {
             if !matches!(hazard.passage, Passage::Never) {
-                hazard.rest = Real::min(hazard.rest, Real::max(line, stop));
+                hazard.rest = Real::min(hazard.rest, rest);
             }
         }
         self.look_beyond();

@@ -1,16 +1,14 @@
 //! What is seen becomes a scene, and the remembered plan must be safe in it.
 
 use super::Shield;
-use super::choice::{allowed, most};
+use super::choice::most;
 use super::clock::Tick;
-use super::decide::next;
 use super::findings::Findings;
 use super::hazard::Hazard;
 use super::hazards::Hazards;
 use super::own::Own;
 use super::rules::Rules;
 use super::scene::Scene;
-use super::verified::spare;
 use crate::decision::{Breach, Cause, Decision};
 use crate::fault::Fault;
 use crate::headroom::{Headroom, Room};
@@ -40,8 +38,13 @@ impl<const N: usize, R: Rules> Shield<'_, N, R> {
         let acts = (inherited, inherited.bounds()[1]);
         let (context, known) = ((&self.contract, self.way), (ego, &self.tracks));
         let mut hazards = Hazards::new();
-        let scene = Scene::new::<N, R>(context, known, findings.closed, acts, &mut hazards);
+        let mut scene = Scene::new::<N, R>(context, known, findings.closed, acts, &mut hazards);
         self.verify_again(&scene, now, deviated || recheck);
+        let goes = self.memory.plan().is_some_and(|plan| {
+            let holds = scene.holds::<R>(&self.contract, plan);
+            plan.go > 0 && scene.hazards.iter().all(holds)
+        });
+        scene.wait_at_line::<R>(&self.contract, self.way, goes);
         let breach = if deviated {
             Some(Breach::Ego)
         } else {
@@ -107,21 +110,16 @@ impl<const N: usize, R: Rules> Shield<'_, N, R> {
         let Some(plan) = self.memory.plan() else {
             return;
         };
-        let contract = &self.contract;
-        let command = allowed(&contract.ego, scene.most, next(contract, plan));
-        let departure = R::departure(contract, scene.ego.speed, scene.inherited, command);
-        // A part of the slack is for what rounding has taken since the plan was verified.
-        let rounding = 0.2 * contract.slack;
-        let holds = |hazard: &Hazard| {
-            R::keeps(spare::<R>(contract, hazard, &departure, R::tail(plan)) + rounding)
+        let kept = {
+            let holds = scene.holds::<R>(&self.contract, plan);
+            let watched = |hazard: &&Hazard| (all || hazard.suspect) && !hazard.is_closed();
+            let watched_hold = scene.hazards.iter().filter(watched).all(&holds);
+            let (context, ego) = ((&self.contract, self.way), scene.ego);
+            let unwatched_hold = (self.tracks)
+                .unwatched_hold::<R>(context, ego, all, |hazards| hazards.iter().all(&holds));
+            watched_hold && unwatched_hold
         };
-        let watched = |hazard: &&Hazard| (all || hazard.suspect) && !hazard.is_closed();
-        let watched_hold = scene.hazards.iter().filter(watched).all(holds);
-        let context = (contract, self.way);
-        let unwatched_hold = self
-            .tracks
-            .unwatched_hold::<R>(context, scene.ego, all, |hazards| hazards.iter().all(holds));
-        if !(watched_hold && unwatched_hold) {
+        if !kept {
             self.void();
         } else {
             self.tracks.hidden.holds = true;

@@ -279,7 +279,8 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         let acts = (inherited, inherited.bounds()[1]);
         let (context, known) = ((contract, self.way), (&ego, &next.tracks));
         let mut hazards = Hazards::new();
-        let scene = Scene::new::<N, R>(context, known, findings.closed, acts, &mut hazards);
+        let mut scene = Scene::new::<N, R>(context, known, findings.closed, acts, &mut hazards);
+        scene.wait_at_line::<R>(contract, self.way, false);
         let braking = -contract.ego.braking;
         let accepted = |a| Some(scene.check::<R>(contract, a)).filter(|v| v.margin >= 0.0);
         match nearest(&contract.ego, scene.most, braking, accepted) {
@@ -320,7 +321,8 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         let acts = (&Inherited::all(contract, [previous; 2]), previous);
         let (context, known) = ((contract, self.way), (&ego, &tracks));
         let mut hazards = Hazards::new();
-        let scene = Scene::new::<N, R>(context, known, findings.closed, acts, &mut hazards);
+        let mut scene = Scene::new::<N, R>(context, known, findings.closed, acts, &mut hazards);
+        scene.wait_at_line::<R>(contract, self.way, false);
         let acceleration = allowed(&contract.ego, scene.most, acceleration);
         Ok(scene.check::<R>(contract, acceleration).margin)
     }

@@ -3,6 +3,7 @@
 use super::actuation::Inherited;
 use super::choice::{allowed, most};
 use super::contract::Contract;
+use super::decide::next;
 use super::hazard::{Hazard, Passage};
 use super::hazards::Hazards;
 use super::margin;
@@ -10,8 +11,9 @@ use super::own::Own;
 use super::rules::Rules;
 use super::tracks::Tracks;
 use super::unwatched::Closed;
-use super::verified::{Verified, best, passage_margin};
+use super::verified::{Verified, best, passage_margin, spare};
 use crate::junction::Way;
+use crate::plan::Plan;
 
 /// An ego without a safe plan that is less than this (m) in a zone stays there.
 const NOSE: f32 = 0.5;
@@ -19,7 +21,7 @@ const NOSE: f32 = 0.5;
 /// The hazards ahead of the ego, and what it may command.
 pub(super) struct Scene<'s> {
     pub(super) ego: &'s Own,
-    pub(super) hazards: &'s Hazards,
+    pub(super) hazards: &'s mut Hazards,
     /// What acts until the command is followed.
     pub(super) inherited: &'s Inherited<f32>,
     /// The hardest acceleration that may be commanded.
@@ -38,13 +40,38 @@ impl<'s> Scene<'s> {
     ) -> Self {
         hazards.add::<N, R>(contract, way, (ego, tracks), closed);
         let most = most(contract, ego.speed, in_effect);
-        wait_at_line::<R>(contract, way, ego, (inherited, most), hazards);
         Self {
             ego,
             hazards,
             inherited,
             most,
         }
+    }
+
+    /// Tells of each hazard whether what is left of `plan`, carried on, is safe from it.
+    pub(super) fn holds<R: Rules>(
+        &self,
+        contract: &Contract,
+        plan: Plan,
+    ) -> impl Fn(&Hazard) -> bool {
+        let command = allowed(&contract.ego, self.most, next(contract, plan));
+        let departure = R::departure(contract, self.ego.speed, self.inherited, command);
+        // A part of the slack is for what rounding has taken since the plan was verified.
+        let rounding = 0.2 * contract.slack;
+        move |hazard| R::keeps(spare::<R>(contract, hazard, &departure, R::tail(plan)) + rounding)
+    }
+
+    /// Has the ego wait at its line, if the junction was told it. `goes`: the plan in force does not brake yet, and
+    /// holds against everybody.
+    pub(super) fn wait_at_line<R: Rules>(&mut self, contract: &Contract, way: Way<'_>, goes: bool) {
+        let Some(path) = way.path(way.ego()).filter(|path| path.waits_at_line()) else {
+            return;
+        };
+        let brakes = allowed(&contract.ego, self.most, -contract.ego.braking);
+        let departure = R::departure(contract, self.ego.speed, self.inherited, brakes);
+        let stop = R::rest(contract, departure.braking, 0.0) + contract.slack;
+        let line = path.line() - self.ego.s - contract.position_error;
+        self.hazards.wait_at(line, stop, goes);
     }
 
     /// The best plan after one period at `command`.
@@ -80,21 +107,4 @@ impl<'s> Scene<'s> {
                 }
             })
     }
-}
-
-/// Has the ego wait at its line, if the junction was told it.
-fn wait_at_line<R: Rules>(
-    contract: &Contract,
-    way: Way<'_>,
-    ego: &Own,
-    (inherited, most): (&Inherited<f32>, f32),
-    hazards: &mut Hazards,
-) {
-    let Some(path) = way.path(way.ego()).filter(|path| path.waits_at_line()) else {
-        return;
-    };
-    let brakes = allowed(&contract.ego, most, -contract.ego.braking);
-    let departure = R::departure(contract, ego.speed, inherited, brakes);
-    let stop = R::rest(contract, departure.braking, 0.0) + contract.slack;
-    hazards.wait_at(path.line() - ego.s - contract.position_error, stop);
 }

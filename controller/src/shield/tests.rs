@@ -426,14 +426,50 @@ fn the_ego_waits_at_its_line_unless_it_is_far_beyond_it() {
     let rest = |hazards: &Hazards| hazards.nearest_rest();
     assert!((rest(&hazards) - 20.0).abs() < 0.2);
     // 15 m to the line, and it can stop after 2 m.
-    hazards.wait_at(15.0, 2.0);
+    hazards.wait_at(15.0, 2.0, false);
     assert_eq!(rest(&hazards), 15.0);
     // It has crept over its line.
-    hazards.wait_at(-0.1, 0.05);
+    hazards.wait_at(-0.1, 0.05, false);
     assert_eq!(rest(&hazards), 0.05);
     let before = hazards.clone();
-    hazards.wait_at(3.0, 4.5);
+    hazards.wait_at(3.0, 4.5, false);
     assert_eq!(hazards, before);
+    // On its way by a plan that goes, it does not take to one that rests inside.
+    hazards.wait_at(-1.0, 4.5, true);
+    assert_eq!(rest(&hazards), -1.0);
+}
+
+/// It entered by a plan that passes before the other, and its driver then dawdles. The zone begins beyond the line, and
+/// an ego that stood between the two would stand in the way of others.
+#[test]
+fn an_ego_that_has_entered_does_not_stop_inside_while_its_plan_passes() {
+    let mut builder = Site::builder();
+    builder.tolerance(0.0);
+    for route in [east(), north()] {
+        builder.path(&route, Class::Car, Footprint::PAPER).unwrap();
+    }
+    let line = zone(&crossing(), 1).ego.from - 6.0;
+    builder.line(EGO, line).unwrap();
+    let site = builder.build().unwrap();
+    let end = zone(&site, 1).ego.to;
+    let mut own = [line - 0.1, 0.0];
+    // As near as it may be when the ego sets off.
+    let starts = (0_u8..60).rev().map(|s| [f32::from(s), 8.0]);
+    let mut other = (starts.into_iter())
+        .find(|&other| margin(&site, own, other, 3.0) >= 0.0)
+        .unwrap();
+    let mut run = Run::new(&site, WORST);
+    while own[0] < end {
+        let entered = own[0] > line + 0.5;
+        let proposal = if entered { 0.0 } else { 3.0 };
+        let decision = run.decide(own, &[(1, other)], proposal);
+        assert!(decision.plan.is_some());
+        assert!(decision.acceleration >= 0.0, "{own:?} {decision:?}");
+        let speed = (own[1] + 0.1 * decision.acceleration).max(0.0);
+        own = [own[0] + 0.05 * (own[1] + speed), speed];
+        other[0] += 0.1 * other[1];
+    }
+    assert!(other[0] < zone(&site, 1).other.from);
 }
 
 /// An ego that had to clear also the zones in which it has precedence would wait before a crossing

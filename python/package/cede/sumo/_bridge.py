@@ -35,6 +35,9 @@ LIVELY, FREE = 3.0, 14.0
 """Acceleration (m/s²) from rest, and the speed (m/s) at which it ends, with nothing ahead."""
 SETTING_OFF = 4.0
 """Speed (m/s), at least, at which a vehicle is expected to cross a junction."""
+SPARE = 6.0
+"""Metres by which a plan passes whoever comes, without which a vehicle that turns does not enter:
+in the bend it is slower than the plan, which then gets tighter."""
 ROOM = 2.0
 """Metres to the vehicle ahead beyond the junction, without which a vehicle waits before it."""
 _NOTHING = 0
@@ -110,6 +113,8 @@ class Car:
     approach: Any = None
     stopped: bool = False
     """Whether it has stopped where it has to."""
+    tight: bool = False
+    """Whether its plan goes, with little to spare."""
 
 
 @dataclass
@@ -491,6 +496,7 @@ class Bridge:
             else:
                 decision = car.shield.filter(self._now, ego, tracks, wanted)
             wanted = decision.acceleration
+            car.tight = bool(decision.plan) and decision.margin < SPARE
             measures.shielded += decision.cause != "policy"
             measures.no_plan += decision.no_plan
             measures.breaches += decision.breach is not None
@@ -539,6 +545,8 @@ class Bridge:
             short = movement.line - car.s
             car.stopped = car.speed < STANDING and short < AT_LINE
             wanted = min(wanted, _stopping(car.speed, short - 0.2, braking))
+        if car.tight and movement.direction != "straight" and car.s <= movement.line:
+            wanted = min(wanted, _stopping(car.speed, movement.line - car.s, braking))
         leader = self.sumo.vehicle.getLeader(car.name, 50.0)
         other = self.cars.get(leader[0]) if leader else None
         # SUMO also names those who are about to merge: they are the shield's matter.
@@ -594,14 +602,14 @@ def contract_named(name: str) -> Contract:
 
     SUMO moves a vehicle's front bumper along its lanes; where these bend, its centre is a little
     faster or slower than the front. `"sumo"` is an all-way stop's with the brakes of SUMO's own
-    vehicles: it can follow as near as they do. A vehicle arrives where the second one of a queue
-    has not been yet, so that others see it arrive.
+    vehicles: it can follow as near as they do. Its plans clear a junction at an acceleration that
+    leaves bends comfortable. A vehicle arrives where the second one of a queue has not been yet, so
+    that others see it arrive.
     """
     errors = {"position_error": 0.05, "speed_error": 0.1}
     if name == "sumo":
         queues = {"distance": 5.0, "patience": 30}
-        return Contract(
-            "all-way-stop", ego_braking=4.5, ego_emergency=8.0, precedence=queues, **errors
-        )
+        drives = {"ego_go": 2.0, "ego_braking": 4.5, "ego_emergency": 8.0}
+        return Contract("all-way-stop", **drives, precedence=queues, **errors)
     known = Contract(name)
     return Contract(name, **{field: max(getattr(known, field), errors[field]) for field in errors})
