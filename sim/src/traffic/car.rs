@@ -48,7 +48,7 @@ impl<'t> Car<'t> {
                 self.state = Some(State {
                     s: first.s,
                     v: first.v,
-                })
+                });
             }
             None => self.gone = true,
         }
