@@ -64,7 +64,7 @@ fn it_says_why_it_refuses() {
             path(&[(0.0, 0.0), (9.0, 0.0)]),
             "the junction is built already",
         ),
-        (Call::Named as u32, vec![2], "no such choice"),
+        (Call::Named as u32, vec![9], "no such choice"),
         (
             Call::Zones as u32,
             vec![0, 5],
