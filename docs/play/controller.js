@@ -10,6 +10,7 @@ const Call = {
 const CONTRACT_FIELDS = [
     "latency", "positionError", "speedError", "egoMaxSpeed", "egoAcceleration", "egoGo", "egoBraking", "egoEmergency",
     "otherMaxSpeed", "otherAcceleration", "otherBraking", "followerReaction", "followerBraking", "egoLag",
+    "egoGain", "egoDisturbance", "jitter",
 ];
 
 // Words of a decision, and accelerations of the shield's grid.
@@ -73,7 +74,7 @@ class Controller {
         this.call(Call.build, 0);
     }
 
-    // A contract by name: 0 worst case, 1 all-way stop.
+    // A contract by name: 0 worst case, 1 all-way stop, 2 one in which nothing is exact.
     named(which) {
         this.call(Call.named, this.put([{ word: which }]));
         const contract = Object.fromEntries(CONTRACT_FIELDS.map((field, i) => [field, this.numbers[i]]));

@@ -22,6 +22,9 @@ pub(crate) fn write(contract: &Contract, out: &mut Output) {
         follower.reaction,
         follower.braking,
         ego.lag,
+        ego.gain,
+        ego.disturbance,
+        contract.jitter(),
     ]);
     out.word(contract.precedence().is_some().into());
 }
@@ -43,6 +46,9 @@ pub(crate) fn read(words: &mut Input<'_>) -> Result<Contract, Refusal> {
         .follower_reaction(words.number()?)
         .follower_braking(words.number()?)
         .ego_lag(words.number()?)
+        .ego_gain(words.number()?)
+        .ego_disturbance(words.number()?)
+        .jitter(words.number()?)
         .precedence((words.word()? != 0).then_some(Precedence::ALL_WAY_STOP));
     Ok(builder.build()?)
 }

@@ -35,7 +35,7 @@ pub struct Ride {
     pub wait: f32,
     /// Metres that it went.
     pub distance: f32,
-    /// How often it began to brake harder than [`HARD`].
+    /// How often it began to brake harder than 4 m/s².
     pub hard_brakes: u32,
     /// Sum of the squares of its jerk (m/s³) over the steps.
     pub jerk: f64,
