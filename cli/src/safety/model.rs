@@ -261,7 +261,7 @@ fn of_property(property: StateProperty) -> Requirement {
 /// A claim of `reach.toml` as a requirement. Where the policy is not asked it is about the shield.
 fn of_scenario(scenario: Scenario) -> Requirement {
     let (goal, code) = match scenario.policy {
-        true => (FLOW, "controller/src/approach.rs::Approach::decide"),
+        true => (FLOW, "controller/src/approach/mod.rs::Approach::decide"),
         false => (APART, "controller/src/shield/mod.rs::Shield::filter"),
     };
     Requirement {
