@@ -3,24 +3,14 @@
 use super::PATIENCE;
 use super::human::Human;
 use super::ride::Ride;
-use super::seat::Seat;
 use cede_controller::kinematics::{STEP, State, advance};
 use cede_controller::separation::OrientedBox;
 use cede_data::Participant;
 
-/// Who decides.
-pub(super) enum Mind<'t> {
-    /// Its record.
-    Human,
-    /// Cede, or another driver behind the shield.
-    Driven(Box<Seat<'t>>),
-}
-
 /// A vehicle in traffic.
 pub(super) struct Car<'t> {
     pub(super) vehicle: &'t Participant,
-    pub(super) mind: Mind<'t>,
-    /// The seat decided in the last step; before the shield is ready the record does.
+    /// A seat decided in the last step; before the shield is ready the record does.
     pub(super) driven: bool,
     pub(super) human: Human,
     pub(super) ride: Ride,
@@ -29,10 +19,9 @@ pub(super) struct Car<'t> {
 }
 
 impl<'t> Car<'t> {
-    pub(super) fn new(vehicle: &'t Participant, mind: Mind<'t>, chosen: bool) -> Self {
+    pub(super) fn new(vehicle: &'t Participant, chosen: bool) -> Self {
         Self {
             vehicle,
-            mind,
             driven: false,
             human: Human::default(),
             ride: Ride::new(vehicle, chosen),
@@ -111,8 +100,6 @@ impl<'t> Car<'t> {
         }
         self.state = None;
         self.gone = true;
-        // Nothing of its memory is needed any more.
-        self.mind = Mind::Human;
     }
 
     pub(super) fn into_ride(self) -> Ride {

@@ -1,7 +1,6 @@
 //! Who is not driven repeats its record, later if somebody was in its way.
 
-use super::car::Car;
-use super::look::Obstacle;
+use super::obstacle::Obstacle;
 use crate::driver::idm::follow;
 use cede_controller::kinematics::{STEP, State};
 use cede_data::{Participant, Sample};
@@ -26,17 +25,13 @@ impl Human {
         self.lost = true;
     }
 
-    /// What keeps `car` from repeating its record: an acceleration (m/s²), infinite if nothing does.
-    pub(super) fn acceleration(car: &Car<'_>, step: u32, obstacle: Option<Obstacle>) -> f32 {
-        let free = if car.is_late(step) {
-            TAKES_UP
-        } else {
-            f32::INFINITY
-        };
+    /// What keeps a vehicle at `speed` (m/s), that may be `late`, from repeating its record: an acceleration (m/s²), infinite if
+    /// nothing does.
+    pub(super) fn acceleration(speed: f32, late: bool, obstacle: Option<Obstacle>) -> f32 {
+        let free = if late { TAKES_UP } else { f32::INFINITY };
         let Some(obstacle) = obstacle else {
             return free;
         };
-        let speed = car.state().v;
         let held = follow(speed, f32::INFINITY, obstacle.gap, obstacle.speed);
         free.min(held.max(-HARDEST))
     }

@@ -1,6 +1,7 @@
 //! Who touches whom, and who is ahead.
 
 use super::car::Car;
+use super::obstacle::Obstacle;
 use cede_controller::{OrientedBox, Pose};
 use cede_data::Participant;
 
@@ -14,15 +15,6 @@ const SAME_WAY: f32 = 0.7;
 /// Seconds and metres that whoever enters keeps from others.
 const HEADWAY: f32 = 1.0;
 const STANDSTILL: f32 = 4.0;
-
-/// Somebody in the way.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Obstacle {
-    /// Metres from bumper to body.
-    pub(super) gap: f32,
-    /// Its speed (m/s) along the way.
-    pub(super) speed: f32,
-}
 
 /// What is ahead of a vehicle on its route.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -4,17 +4,20 @@
 //! Nobody is taken out of the way: who meets whom, and whose delay is whose, is counted as it comes.
 
 mod car;
+mod collision;
 mod human;
 mod look;
+mod obstacle;
 mod ride;
 mod seat;
 mod summary;
 
-pub use ride::{Collision, Ride};
+pub use collision::Collision;
+pub use ride::Ride;
 pub use seat::Kind;
 pub use summary::Summary;
 
-use car::{Car, Mind};
+use car::Car;
 use cede_controller::{Contract, Policy};
 use cede_data::Traffic;
 use human::Human;
@@ -66,14 +69,16 @@ pub fn run(traffic: &Traffic, settings: &Settings<'_>) -> Outcome {
         .map(|index| driven[index].then(|| Crossing::new(traffic, index).map(Box::new)))
         .map(Option::flatten)
         .collect();
-    let minds = crossings.iter().map(|crossing| match crossing {
-        Some(crossing) => Mind::Driven(Box::new(Seat::new(crossing, settings))),
-        None => Mind::Human,
+    let seats = crossings.iter().map(|crossing| {
+        let crossing = crossing.as_deref()?;
+        Some(Seat::new(crossing, settings))
     });
-    let cars = traffic.vehicles.iter().zip(minds).zip(&driven);
-    let cars = cars.map(|((vehicle, mind), &chosen)| Car::new(vehicle, mind, chosen));
+    let cars = traffic.vehicles.iter().zip(&driven);
     World {
-        cars: cars.collect(),
+        cars: cars
+            .map(|(vehicle, &chosen)| Car::new(vehicle, chosen))
+            .collect(),
+        seats: seats.collect(),
         step: 0,
     }
     .run(traffic.file)
@@ -90,6 +95,8 @@ fn chosen(traffic: &Traffic, settings: &Settings<'_>) -> Vec<bool> {
 /// Everybody, at one time.
 struct World<'t> {
     cars: Vec<Car<'t>>,
+    /// Who drives each of them, if not its record.
+    seats: Vec<Option<Seat<'t>>>,
     step: u32,
 }
 
@@ -143,20 +150,17 @@ impl World<'_> {
     /// The acceleration (m/s²) of `index` for the step that begins.
     fn decide(&mut self, index: usize, there: &[usize]) -> f32 {
         let ahead = look::ahead(&self.cars, there, index, self.step);
-        let mut mind = core::mem::replace(&mut self.cars[index].mind, Mind::Human);
-        let decision = match &mut mind {
-            Mind::Driven(seat) => seat.decide(&self.cars, index, self.step, ahead.leader),
-            Mind::Human => None,
-        };
+        let decision = self.seats[index]
+            .as_mut()
+            .and_then(|seat| seat.decide(&self.cars, index, self.step, ahead.leader));
         let car = &mut self.cars[index];
-        car.mind = mind;
         car.driven = decision.is_some();
         match decision {
             Some(decision) => {
                 car.ride.decided(&decision);
                 decision.acceleration
             }
-            None => Human::acceleration(car, self.step, ahead.obstacle),
+            None => Human::acceleration(car.state().v, car.is_late(self.step), ahead.obstacle),
         }
     }
 }

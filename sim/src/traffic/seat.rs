@@ -2,7 +2,7 @@
 
 use super::Settings;
 use super::car::Car;
-use super::look::Obstacle;
+use super::obstacle::Obstacle;
 use crate::driver::idm::follow;
 use crate::meeting::{instant, path, sensed};
 use cede_controller::{

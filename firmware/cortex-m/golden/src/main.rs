@@ -1,6 +1,7 @@
 //! Writes the golden file: `cede-golden FOLDER [i16]`. The embedded policy drives, or the same in integers.
 //!
-//! The last scene is one that a search for the most instructions of a decision found. Everything else comes from one fixed generator: vehicles that start at random and drive as they please,
+//! The last scene is one that a search for the most instructions of a decision found. Everything else comes from one fixed
+//! generator: vehicles that start at random and drive as they please,
 //! within the contract for most of the time; now and then one vanishes, jumps, or is no number at all, and a call is late.
 
 mod random;
