@@ -2,8 +2,8 @@
 
 use super::car::Car;
 use super::obstacle::Obstacle;
-use cede_controller::{OrientedBox, Pose};
-use cede_data::Participant;
+use cede_controller::OrientedBox;
+use cede_controller::kinematics::State;
 
 /// As far (m) as anybody looks ahead.
 const SIGHT: f32 = 60.0;
@@ -11,10 +11,14 @@ const SIGHT: f32 = 60.0;
 const ROOM: f32 = 0.2;
 /// Whoever goes the same way to within this (its cosine) is a leader.
 const SAME_WAY: f32 = 0.7;
+/// As far (m), at least, as a look ahead goes on at once.
+const PIECE: f32 = 0.25;
 
-/// Seconds and metres that whoever enters keeps from others.
-const HEADWAY: f32 = 1.0;
-const STANDSTILL: f32 = 4.0;
+/// Whoever enters leaves everybody the way on which he stops: after so many seconds, braking like that (m/s²), and with so many
+/// metres left.
+const REACTION: f32 = 1.0;
+const BRAKING: f32 = 3.0;
+const STANDSTILL: f32 = 2.0;
 
 /// What is ahead of a vehicle on its route.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -34,8 +38,7 @@ pub(super) fn ahead(cars: &[Car<'_>], there: &[usize], ego: usize, step: u32) ->
         .filter(|&&index| index != ego)
         .map(|&index| &cars[index])
     {
-        let pose = other.vehicle.route.pose(other.state().s);
-        let Some((obstacle, along)) = in_way(own, other.vehicle, pose, other.state().v) else {
+        let Some((obstacle, along)) = in_way(own, other) else {
             continue;
         };
         let nearer = |known: Option<Obstacle>| known.is_none_or(|known| obstacle.gap < known.gap);
@@ -49,47 +52,64 @@ pub(super) fn ahead(cars: &[Car<'_>], there: &[usize], ego: usize, step: u32) ->
     ahead
 }
 
-/// The vehicle at `pose` as an obstacle on the route of `own`, and the cosine between their directions.
-fn in_way(own: &Car<'_>, other: &Participant, pose: Pose, speed: f32) -> Option<(Obstacle, f32)> {
-    let (route, state) = (&own.vehicle.route, own.state());
-    let centre = pose.position;
-    let here = route.pose(state.s).position;
-    if (centre - here).norm_squared() > SIGHT * SIGHT {
+/// `other` as an obstacle on the way of `own`, and the cosine between their directions where they would touch.
+fn in_way(own: &Car<'_>, other: &Car<'_>) -> Option<(Obstacle, f32)> {
+    let (route, from) = (&own.vehicle.route, own.state().s);
+    let body = other.body();
+    if (body.centre - own.body().centre).norm_squared() > SIGHT * SIGHT
+        || route.project(body.centre) <= from
+    {
         return None;
     }
-    let s = route.project(centre);
-    let on = route.pose(s);
-    let along = on.direction.dot(&pose.direction);
-    let across = on.direction.perp(&pose.direction).abs();
-    let body = other.footprint;
-    let half_length = 0.5 * (body.length * along.abs() + body.width * across);
-    let half_width = 0.5 * (body.length * across + body.width * along.abs());
-    let aside = on.direction.perp(&(centre - on.position)).abs();
-    if s <= state.s || aside > half_width + 0.5 * own.vehicle.footprint.width + ROOM {
-        return None;
+    let mut wide = own.vehicle.footprint;
+    wide.width += 2.0 * ROOM;
+    if OrientedBox::new(route.pose(from), wide).overlaps(&body) {
+        // Side by side: it is in the way only if it is touched.
+        wide = own.vehicle.footprint;
     }
-    let gap = s - half_length - state.s - 0.5 * own.vehicle.footprint.length;
-    let obstacle = Obstacle {
-        gap,
-        speed: speed * along.max(0.0),
-    };
-    Some((obstacle, along))
+    let mut s = from;
+    while s < from + SIGHT {
+        let there = OrientedBox::new(route.pose(s), wide);
+        let apart = there.separation(&body);
+        if apart <= 0.0 {
+            let along = there.direction.dot(&body.direction);
+            let obstacle = Obstacle {
+                gap: s - from,
+                speed: other.state().v * along.max(0.0),
+            };
+            return Some((obstacle, along));
+        }
+        s += PIECE.max(0.5 * apart);
+    }
+    None
 }
 
-/// Whether nobody is where `index` enters who is not where his record has him, nor right ahead.
+/// Whether the way on which `index`, which enters, would stop is apart from those of all who are not where their record has
+/// them.
 pub(super) fn has_room(cars: &[Car<'_>], index: usize, step: u32) -> bool {
     let entering = &cars[index];
     let Some(first) = entering.vehicle.record.first() else {
         return true;
     };
-    let mut footprint = entering.vehicle.footprint;
-    footprint.length += 2.0 * HEADWAY * first.v + STANDSTILL;
-    let body = OrientedBox::new(entering.vehicle.route.pose(first.s), footprint);
+    let first = State {
+        s: first.s,
+        v: first.v,
+    };
     let displaced = |car: &&Car<'_>| car.is_there() && (car.driven || car.is_late(step));
-    !cars
-        .iter()
-        .filter(displaced)
-        .any(|car| car.body().overlaps(&body))
+    let mut others = cars.iter().filter(displaced);
+    others.all(|other| {
+        stopping(other, other.state())
+            .all(|there| stopping(entering, first).all(|here| !here.overlaps(&there)))
+    })
+}
+
+/// The body of `car` every metre from `state` to where it stops.
+fn stopping(car: &Car<'_>, state: State) -> impl Iterator<Item = OrientedBox> {
+    let reach = state.v * (REACTION + 0.5 * state.v / BRAKING) + STANDSTILL;
+    (0..=reach as u32).map(move |metre| {
+        let pose = car.vehicle.route.pose(state.s + metre as f32);
+        OrientedBox::new(pose, car.vehicle.footprint)
+    })
 }
 
 /// The pairs of `there` that touch, in order.

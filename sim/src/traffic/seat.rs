@@ -6,10 +6,10 @@ use super::obstacle::Obstacle;
 use crate::driver::idm::follow;
 use crate::meeting::{instant, path, sensed};
 use cede_controller::{
-    Approach, Class, Decision, Drive, Junction, JunctionBuilder, JunctionError, Observation, Part,
-    PathId, Shield, Track,
+    Approach, Class, Decision, Drive, Junction, JunctionBuilder, Observation, Part, PathId, Shield,
+    Track,
 };
-use cede_data::Traffic;
+use cede_data::{Participant, Traffic};
 
 /// What drives a vehicle in traffic; behind all of them is the shield.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -28,8 +28,11 @@ const LATERAL: f32 = 2.6;
 /// Paths and points of the junction of a vehicle.
 const PATHS: usize = 256;
 const POINTS: usize = 16_384;
+type Builder = JunctionBuilder<PATHS, POINTS, 1>;
 /// Metres from a route at which another is too far off to meet it.
 const FAR_OFF: f32 = 30.0;
+/// Metres for which a path goes on straight past the end of the record: who leaves on one road is seen to.
+const BEYOND: f32 = 30.0;
 
 /// The way of a vehicle, which is path 0, through those of all others whose ways are near, whenever they come: who is late
 /// is late without limit.
@@ -43,65 +46,50 @@ pub(super) struct Crossing {
 impl Crossing {
     /// `None` if the ways are no paths of a junction: such a vehicle is not driven.
     pub(super) fn new(traffic: &Traffic, ego: usize) -> Option<Self> {
-        Self::build(traffic, ego).ok()
-    }
-
-    fn build(traffic: &Traffic, ego: usize) -> Result<Self, JunctionError> {
-        let own = traffic
-            .vehicles
-            .get(ego)
-            .ok_or(JunctionError::UnknownPath {
-                path: path(0),
-                paths: 0,
-            })?;
+        let own = traffic.vehicles.get(ego)?;
         let wanted = own.entry.limit.unwrap_or(WANTED);
         let mut builder = Junction::builder();
         builder.tolerance(0.0).lateral(LATERAL);
-        let way = builder.path(&own.route, Class::Car, own.footprint)?;
-        builder.control(way, own.entry.control)?;
-        builder.speed_limit(way, 0.0, wanted)?;
-        line(&mut builder, way, own)?;
-        builder.order(way, ego as u16)?;
+        let way = join(&mut builder, ego, own)?;
+        builder.speed_limit(way, 0.0, wanted).ok()?;
         let mut others = Vec::new();
         for (index, other) in traffic.vehicles.iter().enumerate() {
             if index == ego || !near(own, other) {
                 continue;
             }
-            let path = builder.path(&other.route, Class::Car, other.footprint)?;
-            builder.control(path, other.entry.control)?;
-            line(&mut builder, path, other)?;
-            builder.order(path, index as u16)?;
+            let path = join(&mut builder, index, other)?;
             match traffic.goes_first(ego, index) {
-                Some(true) => builder.right_of_way(way, path)?,
-                Some(false) => builder.right_of_way(path, way)?,
+                Some(true) => builder.right_of_way(way, path).ok()?,
+                Some(false) => builder.right_of_way(path, way).ok()?,
                 None => {}
             }
             others.push(index);
         }
-        Ok(Self {
-            junction: builder.build()?,
+        Some(Self {
+            junction: builder.build().ok()?,
             others,
             wanted,
         })
     }
 }
 
-/// Has whoever drives on `path` wait with its front at its line, if the map has one on its way.
-fn line(
-    builder: &mut JunctionBuilder<PATHS, POINTS, 1>,
-    path: PathId,
-    vehicle: &cede_data::Participant,
-) -> Result<(), JunctionError> {
+/// The way of `vehicle`, which is number `index` of all, becomes a path.
+fn join(builder: &mut Builder, index: usize, vehicle: &Participant) -> Option<PathId> {
+    let route = vehicle.route.extended(0.0, BEYOND).ok()?;
+    let path = builder.path(&route, Class::Car, vehicle.footprint).ok()?;
+    builder.control(path, vehicle.entry.control).ok()?;
+    builder.order(path, index as u16).ok()?;
+    // It waits with its front at its line, if the map has one on its way.
     let front = 0.5 * vehicle.footprint.length;
-    match vehicle.entry.line.filter(|&line| line > front) {
-        Some(line) => builder.line(path, line - front),
-        None => Ok(()),
+    if let Some(line) = vehicle.entry.line.filter(|&line| line > front) {
+        builder.line(path, line - front).ok()?;
     }
+    Some(path)
 }
 
 /// Whether the ways of two are so close that they may meet.
-fn near(own: &cede_data::Participant, other: &cede_data::Participant) -> bool {
-    let bounds = |vehicle: &cede_data::Participant| {
+fn near(own: &Participant, other: &Participant) -> bool {
+    let bounds = |vehicle: &Participant| {
         let points = vehicle.route.points().iter();
         points.fold(
             [
