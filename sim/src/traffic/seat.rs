@@ -6,8 +6,8 @@ use super::obstacle::Obstacle;
 use crate::driver::idm::follow;
 use crate::meeting::{instant, path, sensed};
 use cede_controller::{
-    Approach, Class, Decision, Drive, Junction, JunctionBuilder, Observation, Part, PathId, Shield,
-    Track,
+    Approach, Class, ConflictKind, Decision, Drive, Junction, JunctionBuilder, Observation, Part,
+    PathId, RouteConflict, Shield, Track,
 };
 use cede_data::{Participant, Traffic};
 
@@ -70,6 +70,19 @@ impl Crossing {
             others,
             wanted,
         })
+    }
+
+    /// Whether at `s` (m) it is where its way meets that of one of `tracks`, other than behind or ahead of him on one road.
+    fn is_inside(&self, s: f32, tracks: &[Track]) -> bool {
+        let conflicts = tracks.iter().filter_map(|track| {
+            let conflict = self
+                .junction
+                .conflict(path(0), PathId::new(track.number as u8));
+            conflict.filter(|conflict| conflict.kind != ConflictKind::Following)
+        });
+        conflicts
+            .flat_map(RouteConflict::zones)
+            .any(|zone| zone.ego.from < s && s < zone.ego.to)
     }
 }
 
@@ -160,6 +173,10 @@ impl<'t> Seat<'t> {
         let most = follow(speed, wanted, gap, ahead);
         let driver = self.driver.as_mut()?;
         if !self.ready {
+            // Who comes to a place where two ways meet finds there who has come before; nobody is handed over inside.
+            if self.crossing.is_inside(own.state().s, &tracks) {
+                return None;
+            }
             let ready = match driver {
                 Driver::Cede(approach) => approach.ready(now, &observation),
                 Driver::Profile(shield) => shield.ready(now, &observation),
