@@ -25,7 +25,7 @@ pub(crate) fn motion(states: &[RawState]) -> Result<(SimRoute, Vec<Sample>), Rou
 }
 
 /// The same on a route without the jitter of a vehicle that stands: its points are a metre apart, each ahead of the one
-/// before.
+/// before, and those are left out that would make a kink sharper than a right angle.
 ///
 /// # Errors
 /// See [`motion`].
@@ -41,7 +41,22 @@ pub(crate) fn smooth_motion(states: &[RawState]) -> Result<(SimRoute, Vec<Sample
             path.push(vertex);
         }
     }
-    along_path(&path, states)
+    loop {
+        let found = along_path(&path, states)?;
+        let Some(kink) = sharp_kink(&found.0) else {
+            return Ok(found);
+        };
+        path.retain(|vertex| single(vertex.position) != kink);
+    }
+}
+
+/// The first point of a route that makes a kink sharper than a right angle.
+fn sharp_kink(route: &SimRoute) -> Option<Point> {
+    let mut kinks = route.points().windows(3);
+    kinks.find_map(|kink| match *kink {
+        [a, b, c] if (b - a).dot(&(c - b)) <= 0.0 => Some(b),
+        _ => None,
+    })
 }
 
 fn along_path(path: &[Vertex], states: &[RawState]) -> Result<(SimRoute, Vec<Sample>), RouteError> {
