@@ -19,6 +19,7 @@ pub(super) struct Car<'t> {
 }
 
 impl<'t> Car<'t> {
+    /// One that is to be driven, if it is `chosen`.
     pub(super) fn new(vehicle: &'t Participant, chosen: bool) -> Self {
         Self {
             vehicle,
@@ -98,6 +99,11 @@ impl<'t> Car<'t> {
         } else {
             return;
         }
+        self.leave();
+    }
+
+    /// It is not there any more, and does not come back.
+    pub(super) const fn leave(&mut self) {
         self.state = None;
         self.gone = true;
     }

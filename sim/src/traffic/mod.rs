@@ -1,7 +1,8 @@
 //! In traffic: a share of the vehicles of a recording is driven, from where each appears until its record ends; the others
 //! repeat their record, and mind who is in their way because he is not where he was.
 //!
-//! Nobody is taken out of the way: who meets whom, and whose delay is whose, is counted as it comes.
+//! Nobody is taken out of the way: who meets whom, and whose delay is whose, is counted as it comes. Only those are left out
+//! whose way comes back to itself: such a way is no path of a junction.
 
 mod car;
 mod collision;
@@ -49,12 +50,14 @@ pub struct Settings<'w> {
 pub struct Outcome {
     /// The recording's number.
     pub file: u16,
-    /// One for each vehicle.
+    /// One for each vehicle; empty for those that were left out.
     pub rides: Vec<Ride>,
     /// Who touched whom, of pairs in which one at least was driven.
     pub collisions: Vec<Collision>,
     /// Pairs of others that touched.
     pub others_touched: usize,
+    /// Vehicles that were left out.
+    pub left_out: usize,
 }
 
 /// Lets the traffic run until everybody has left.
@@ -64,20 +67,29 @@ pub struct Outcome {
 #[must_use]
 pub fn run(traffic: &Traffic, settings: &Settings<'_>) -> Outcome {
     let driven = chosen(traffic, settings);
+    let there: Vec<bool> = traffic.vehicles.par_iter().map(seat::is_path).collect();
     let crossings: Vec<Option<Box<Crossing>>> = (0..traffic.vehicles.len())
         .into_par_iter()
-        .map(|index| driven[index].then(|| Crossing::new(traffic, index).map(Box::new)))
+        .map(|index| {
+            let driven = driven[index] && there[index];
+            driven.then(|| Crossing::new(traffic, index, &there).map(Box::new))
+        })
         .map(Option::flatten)
         .collect();
     let seats = crossings.iter().map(|crossing| {
         let crossing = crossing.as_deref()?;
         Some(Seat::new(crossing, settings))
     });
-    let cars = traffic.vehicles.iter().zip(&driven);
+    let cars = traffic.vehicles.iter().zip(driven).zip(&there);
+    let cars = cars.map(|((vehicle, chosen), &there)| {
+        let mut car = Car::new(vehicle, chosen);
+        if !there {
+            car.leave();
+        }
+        car
+    });
     World {
-        cars: cars
-            .map(|(vehicle, &chosen)| Car::new(vehicle, chosen))
-            .collect(),
+        cars: cars.collect(),
         seats: seats.collect(),
         step: 0,
     }
@@ -107,6 +119,7 @@ impl World<'_> {
             rides: Vec::new(),
             collisions: Vec::new(),
             others_touched: 0,
+            left_out: self.cars.iter().filter(|car| car.is_gone()).count(),
         };
         let mut touching: Vec<[usize; 2]> = Vec::new();
         while self.cars.iter().any(|car| !car.is_gone()) {

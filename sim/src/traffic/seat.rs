@@ -44,8 +44,9 @@ pub(super) struct Crossing {
 }
 
 impl Crossing {
-    /// `None` if the ways are no paths of a junction: such a vehicle is not driven.
-    pub(super) fn new(traffic: &Traffic, ego: usize) -> Option<Self> {
+    /// The crossing of vehicle `ego` with those of the others that are `there`. `None` if they are too many for a junction: such
+    /// a vehicle is not driven.
+    pub(super) fn new(traffic: &Traffic, ego: usize, there: &[bool]) -> Option<Self> {
         let own = traffic.vehicles.get(ego)?;
         let wanted = own.entry.limit.unwrap_or(WANTED);
         let mut builder = Junction::builder();
@@ -53,8 +54,8 @@ impl Crossing {
         let way = join(&mut builder, ego, own)?;
         builder.speed_limit(way, 0.0, wanted).ok()?;
         let mut others = Vec::new();
-        for (index, other) in traffic.vehicles.iter().enumerate() {
-            if index == ego || !near(own, other) {
+        for (index, (other, &there)) in traffic.vehicles.iter().zip(there).enumerate() {
+            if index == ego || !there || !near(own, other) {
                 continue;
             }
             let path = join(&mut builder, index, other)?;
@@ -84,6 +85,12 @@ impl Crossing {
             .flat_map(RouteConflict::zones)
             .any(|zone| zone.ego.from < s && s < zone.ego.to)
     }
+}
+
+/// Whether the way of `vehicle` is a path of a junction. One that comes back to itself is none.
+pub(super) fn is_path(vehicle: &Participant) -> bool {
+    let mut builder = Box::new(Junction::builder());
+    join(&mut builder, 0, vehicle).is_some() && builder.build_in_place().is_ok()
 }
 
 /// The way of `vehicle`, which is number `index` of all, becomes a path.

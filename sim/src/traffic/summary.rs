@@ -16,7 +16,7 @@ pub struct Summary {
     pub share: f64,
     /// Recordings.
     pub recordings: usize,
-    /// Vehicles.
+    /// Vehicles, without those that were left out.
     pub vehicles: usize,
     /// Vehicles that were driven for a step at least.
     pub driven: usize,
@@ -42,6 +42,8 @@ pub struct Summary {
     pub struck: usize,
     /// Pairs of others that touched.
     pub others_touched: usize,
+    /// Vehicles that were left out, because their way comes back to itself.
+    pub left_out: usize,
     /// How often the driven ones began to brake harder than 4 m/s², per kilometre.
     pub hard_brakes_per_km: Option<f64>,
     /// Root mean square of their jerk (m/s³).
@@ -84,9 +86,11 @@ impl Summary {
             driver: settings.kind,
             share: settings.share,
             recordings: outcomes.len(),
-            vehicles: rides().count(),
+            vehicles: rides().filter(|(_, ride)| ride.steps > 0).count(),
             driven: driven().count(),
-            refused: others().filter(|(_, ride)| ride.chosen).count(),
+            refused: others()
+                .filter(|(_, ride)| ride.chosen && ride.steps > 0)
+                .count(),
             arrived: rides().filter(|(_, ride)| ride.arrived.is_some()).count(),
             stuck: driven().filter(|(_, ride)| ride.stuck).count(),
             others_stuck: others().filter(|(_, ride)| ride.stuck).count(),
@@ -97,6 +101,7 @@ impl Summary {
             collisions: collisions().count(),
             struck: collisions().filter(|collision| collision.struck).count(),
             others_touched: outcomes.iter().map(|it| it.others_touched).sum(),
+            left_out: outcomes.iter().map(|it| it.left_out).sum(),
             hard_brakes_per_km: (kilometres > 0.0)
                 .then(|| total(&|ride| f64::from(ride.hard_brakes)) / kilometres),
             jerk_rms: (all_steps > 0.0).then(|| (total(&|ride| ride.jerk) / all_steps).sqrt()),
