@@ -21,7 +21,12 @@ const NAMED: [(&str, Contract, &str); 2] = [
 ];
 
 /// Those that are files of their own, with their numbers and what they say.
-const FILES: [(&str, &str, &str); 3] = [
+const FILES: [(&str, &str, &str); 4] = [
+    (
+        "queues",
+        include_str!("../../contracts/queues.toml"),
+        "All-way stop, where whoever is second in a queue does not count yet",
+    ),
     (
         "passenger-car",
         include_str!("../../contracts/passenger-car.toml"),

@@ -6,10 +6,15 @@ use cede_sim::traffic::{Kind, Outcome, Settings, Summary, run};
 
 /// A vehicle that comes from 60 m before the centre at this time (s) with this heading (rad), at 6 m/s.
 fn track(id: u32, appears: f64, heading: f64) -> Track {
+    track_from(id, appears, heading, -60.0)
+}
+
+/// The same from another place on its road (m).
+fn track_from(id: u32, appears: f64, heading: f64, from: f64) -> Track {
     let (sin, cos) = heading.sin_cos();
     // On the right of its road.
     let at = |step: i32| {
-        let s = 0.6 * f64::from(step) - 60.0;
+        let s = 0.6 * f64::from(step) + from;
         RawState {
             x: s * cos + 1.75 * sin,
             y: s * sin - 1.75 * cos,
@@ -39,6 +44,10 @@ fn traffic() -> Traffic {
             )
         })
         .collect();
+    of(tracks)
+}
+
+fn of(tracks: Vec<Track>) -> Traffic {
     let recording = Recording {
         file: 0,
         tracks,
@@ -92,6 +101,37 @@ fn where_all_are_driven_they_arrive_and_nobody_is_met() {
 fn the_records_of_this_traffic_cross() {
     let outcome = run(&traffic(), &settings(0.0, Kind::Cede));
     assert!(outcome.others_touched > 0, "{outcome:?}");
+}
+
+/// A record may begin in the middle of the junction, where somebody comes by who was not there in the recording.
+#[test]
+fn nobody_appears_in_anothers_way() {
+    for tenths in 30..70 {
+        let north = std::f64::consts::FRAC_PI_2;
+        let tracks = vec![
+            track(0, 0.0, 0.0),
+            track_from(1, 0.1 * f64::from(tenths), north, -6.0),
+        ];
+        let outcome = run(&of(tracks), &settings(1.0, Kind::Profile));
+        assert_eq!(outcome.collisions, [], "{tenths}");
+        assert!(outcome.rides.iter().all(|ride| ride.arrived.is_some()));
+    }
+}
+
+/// A way that comes back to itself is no path of a junction.
+#[test]
+fn whose_way_comes_back_to_itself_is_left_out_alone() {
+    let mut tracks = vec![track(0, 0.0, 0.0), track(1, 2.0, 3.0)];
+    for (step, state) in (0_i32..).zip(&mut tracks[1].states) {
+        let (sin, cos) = (0.06 * f64::from(step)).sin_cos();
+        (state.x, state.y) = (-40.0 + 10.0 * cos, 10.0 * sin);
+        (state.vx, state.vy) = (-6.0 * sin, 6.0 * cos);
+        state.heading = cos.atan2(-sin);
+    }
+    let outcome = run(&of(tracks), &settings(1.0, Kind::Cede));
+    assert_eq!(outcome.left_out, 1);
+    assert!(outcome.rides[0].driven > 0, "{outcome:?}");
+    assert_eq!(outcome.rides[1].steps, 0);
 }
 
 #[test]

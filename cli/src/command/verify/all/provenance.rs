@@ -11,6 +11,7 @@ use std::process::Command;
 const FILES: [&str; 11] = [
     "contracts/worst-case.toml",
     "contracts/all-way-stop.toml",
+    "contracts/queues.toml",
     "contracts/passenger-car.toml",
     "contracts/passenger-car-wet.toml",
     "contracts/lorry.toml",
