@@ -25,7 +25,7 @@ pub(crate) fn motion(states: &[RawState]) -> Result<(SimRoute, Vec<Sample>), Rou
 }
 
 /// The same on a route without the jitter of a vehicle that stands: its points are a metre apart, each ahead of the one
-/// before, and those are left out that would make a kink sharper than a right angle.
+/// before.
 ///
 /// # Errors
 /// See [`motion`].
@@ -41,22 +41,7 @@ pub(crate) fn smooth_motion(states: &[RawState]) -> Result<(SimRoute, Vec<Sample
             path.push(vertex);
         }
     }
-    loop {
-        let found = along_path(&path, states)?;
-        let Some(kink) = sharp_kink(&found.0) else {
-            return Ok(found);
-        };
-        path.retain(|vertex| single(vertex.position) != kink);
-    }
-}
-
-/// The first point of a route that makes a kink sharper than a right angle.
-fn sharp_kink(route: &SimRoute) -> Option<Point> {
-    let mut kinks = route.points().windows(3);
-    kinks.find_map(|kink| match *kink {
-        [a, b, c] if (b - a).dot(&(c - b)) <= 0.0 => Some(b),
-        _ => None,
-    })
+    along_path(&path, states)
 }
 
 fn along_path(path: &[Vertex], states: &[RawState]) -> Result<(SimRoute, Vec<Sample>), RouteError> {
@@ -198,39 +183,5 @@ fn accelerations(samples: &mut [Sample]) {
         let a = ((aim - state.v) / STEP).clamp(-MAX_ACCELERATION, MAX_ACCELERATION);
         samples[i - 1].a = a;
         state = advance(state, a);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Along a winding road, and back after a turn of less than a car's length.
-    #[test]
-    fn a_narrow_turn_after_a_long_way_makes_no_sharp_kink() {
-        let road = |x: f64| [x, 0.5 * (0.9 * x).sin()];
-        let there = (0..600).map(|i| road(0.5 * f64::from(i)));
-        let turn = (0..7).map(|i| {
-            let (sin, cos) = (0.5 * f64::from(i)).sin_cos();
-            [300.0 + 0.5 * sin, 0.5 - 0.5 * cos]
-        });
-        let back = (0..600).map(|i| [300.0 - 0.5 * f64::from(i), 1.0]);
-        let way: Vec<[f64; 2]> = there.chain(turn).chain(back).collect();
-        let states: Vec<RawState> = (way.windows(2))
-            .map(|pair| {
-                let [vx, vy] = [0, 1].map(|i| 10.0 * (pair[1][i] - pair[0][i]));
-                RawState {
-                    x: pair[0][0],
-                    y: pair[0][1],
-                    vx,
-                    vy,
-                    heading: vy.atan2(vx),
-                }
-            })
-            .collect();
-        let (route, samples) = smooth_motion(&states).expect("a route");
-        assert_eq!(samples.len(), states.len());
-        assert_eq!(sharp_kink(&route), None);
-        assert!((route.length() - 615.0).abs() < 5.0, "{}", route.length());
     }
 }
