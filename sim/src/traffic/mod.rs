@@ -2,7 +2,7 @@
 //! repeat their record, and mind who is in their way because he is not where he was.
 //!
 //! Nobody is taken out of the way: who meets whom, and whose delay is whose, is counted as it comes. Only those are left out
-//! whose way comes back to itself: such a way is no path of a junction.
+//! whose way is no path of a junction: it comes back to itself, or has a kink sharper than a right angle.
 
 mod car;
 mod collision;

@@ -87,7 +87,7 @@ impl Crossing {
     }
 }
 
-/// Whether the way of `vehicle` is a path of a junction. One that comes back to itself is none.
+/// Whether the way of `vehicle` is a path of a junction. One that comes back to itself is none, nor one with a sharp kink.
 pub(super) fn is_path(vehicle: &Participant) -> bool {
     let mut builder = Box::new(Junction::builder());
     join(&mut builder, 0, vehicle).is_some() && builder.build_in_place().is_ok()

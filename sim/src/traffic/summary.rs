@@ -42,7 +42,7 @@ pub struct Summary {
     pub struck: usize,
     /// Pairs of others that touched.
     pub others_touched: usize,
-    /// Vehicles that were left out, because their way comes back to itself.
+    /// Vehicles that were left out, because their way is no path of a junction.
     pub left_out: usize,
     /// How often the driven ones began to brake harder than 4 m/s², per kilometre.
     pub hard_brakes_per_km: Option<f64>,
