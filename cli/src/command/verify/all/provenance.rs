@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// Files whose content the evidence is about, beside the code.
-const FILES: [&str; 11] = [
+const FILES: [&str; 12] = [
     "contracts/worst-case.toml",
     "contracts/all-way-stop.toml",
     "contracts/queues.toml",
