@@ -59,13 +59,13 @@ def map(
     results = [task.remote(function, item) for item in items]
     try:
         return ray.get(results)
-    except ray.exceptions.RayTaskError:
-        raise
     except ray.exceptions.RayError as lost:
-        raise Error(f"an item was lost with its worker, and {retries} times again") from lost
-    finally:
-        for result in results:
+        # Only what still waits: to cancel a task while its result arrives can end the whole driver.
+        for result in ray.wait(results, num_returns=len(results), timeout=0)[1]:
             ray.cancel(result)
+        if isinstance(lost, ray.exceptions.RayTaskError):
+            raise
+        raise Error(f"an item was lost with its worker, and {retries} times again") from lost
 
 
 def _call(function: Callable[[Any], Any], item: Any) -> Any:
