@@ -63,6 +63,8 @@ struct Draft {
     limits: Vec<(f32, f32)>,
     /// Of pedestrians, m/s.
     pace: Option<f32>,
+    /// In the order of turns.
+    place: Option<u16>,
 }
 
 /// Collects what a junction is built from. A call that raises changes nothing.
@@ -88,7 +90,7 @@ impl Builder {
     }
 
     /// Adds a path along `points`, an array of shape (n, 2) or a list of pairs, in metres.
-    #[pyo3(signature = (points, *, kind = "car", length = 5.0, width = 2.0, line = None, control = "unknown", limits = Vec::new(), pace = None))]
+    #[pyo3(signature = (points, *, kind = "car", length = 5.0, width = 2.0, line = None, control = "unknown", limits = Vec::new(), pace = None, order = None))]
     #[allow(clippy::too_many_arguments)]
     fn path(
         &mut self,
@@ -100,6 +102,7 @@ impl Builder {
         control: &str,
         limits: Vec<(f32, f32)>,
         pace: Option<f32>,
+        order: Option<u16>,
     ) -> PyResult<u8> {
         let points = points.as_array();
         if points.ncols() != 2 {
@@ -125,11 +128,12 @@ impl Builder {
             control,
             limits,
             pace,
+            place: order,
         })
     }
 
     /// Adds a path along the points of path `of`, for another class of vehicles.
-    #[pyo3(signature = (of, kind, length, width, line = None))]
+    #[pyo3(signature = (of, kind, length, width, line = None, order = None))]
     fn variant(
         &mut self,
         of: u8,
@@ -137,6 +141,7 @@ impl Builder {
         length: f32,
         width: f32,
         line: Option<f32>,
+        order: Option<u16>,
     ) -> PyResult<u8> {
         let of = self.known(of)?;
         let control = self
@@ -152,6 +157,7 @@ impl Builder {
             // It has those of the other path.
             limits: Vec::new(),
             pace: None,
+            place: order,
         })
     }
 
@@ -230,6 +236,9 @@ impl Builder {
             builder.control(id, draft.control)?;
             if let Some(pace) = draft.pace {
                 builder.pace(id, pace)?;
+            }
+            if let Some(place) = draft.place {
+                builder.order(id, place)?;
             }
             for &(from, speed) in &draft.limits {
                 builder.speed_limit(id, from, speed)?;

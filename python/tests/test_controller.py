@@ -249,3 +249,34 @@ def test_a_pedestrian_may_turn_back():
     gone = cede.Track(3, over, junction.vehicle(over, 10.0, 1.0), kind="pedestrian")
     decision = shield.filter(0.0, ego, [gone], 3.0)
     assert decision.reason.kind == "arrival" and decision.reason.other == 3
+
+
+def both_go(order):
+    """Periods in which two that came to their lines at once, and wait, would both go."""
+    east, north = [(-60.0, 0.0), (60.0, 0.0)], [(0.0, -60.0), (0.0, 60.0)]
+    shields = []
+    for ways, places in (((east, north), order), ((north, east), order[::-1])):
+        # Each has its own way as path 0.
+        builder = cede.Junction.builder(tolerance=0.0)
+        paths = [
+            builder.path(way, order=place, length=4.5, width=1.8)
+            for way, place in zip(ways, places, strict=True)
+        ]
+        junction = builder.build()
+        shields.append((junction, paths, cede.Shield(junction, paths[0], cede.Contract("all-way-stop"))))
+    both = 0
+    for period in range(200):
+        left = max(50 - period, 0) / 50
+        goes = []
+        for junction, (own, other), shield in shields:
+            at = junction.conflict(own, other).zones[0][1][0] - 0.1 - 10 * left * left
+            ego, track = (junction.vehicle(path, at, 4 * left) for path in (own, other))
+            decision = shield.filter(0.1 * period, ego, [cede.Track(1, other, track)], 2.0)
+            goes.append(decision.acceleration > 0 and left == 0)
+        both += all(goes)
+    return both
+
+
+def test_vehicles_that_number_paths_differently_agree_on_the_order_of_turns():
+    assert both_go([None, None]) > 0
+    assert both_go([3, 7]) == 0

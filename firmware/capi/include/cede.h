@@ -1904,6 +1904,15 @@ cede_status cede_junction_set_pace(struct cede_junction *junction,
                                    struct cede_detail *detail);
 
 /**
+ * Sets the place of a path in the order in which vehicles at rest take turns, its number unless it is set: of two, the one with
+ * the larger place has the first turns. Vehicles that are to trust each other have to agree on it (U7 of the manual).
+ */
+cede_status cede_junction_set_order(struct cede_junction *junction,
+                                    uint8_t path,
+                                    uint16_t place,
+                                    struct cede_detail *detail);
+
+/**
  * Builds the junction: works out how each two paths meet. Nothing can be added afterwards. A junction that is refused can
  * be mended and built again.
  */

@@ -80,6 +80,7 @@ public:
         return call(cede_junction_add_speed_limit, get(), path, from, speed);
     }
     result set_pace(uint8_t path, float pace) { return call(cede_junction_set_pace, get(), path, pace); }
+    result set_order(uint8_t path, uint16_t place) { return call(cede_junction_set_order, get(), path, place); }
     result build() { return call(cede_junction_build, get()); }
 };
 

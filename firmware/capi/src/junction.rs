@@ -431,6 +431,20 @@ pub unsafe extern "C" fn cede_junction_set_pace(
     unsafe { told(build_up(junction, set), detail) }
 }
 
+/// Sets the place of a path in the order in which vehicles at rest take turns, its number unless it is set: of two, the one with
+/// the larger place has the first turns. Vehicles that are to trust each other have to agree on it (U7 of the manual).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cede_junction_set_order(
+    junction: *mut cede_junction,
+    path: u8,
+    place: u16,
+    detail: *mut cede_detail,
+) -> cede_status {
+    let set = |builder: &mut Builder| builder.order(PathId::new(path), place);
+    // SAFETY: the header's contract of pointers.
+    unsafe { told(build_up(junction, set), detail) }
+}
+
 /// Builds the junction: works out how each two paths meet. Nothing can be added afterwards. A junction that is refused can
 /// be mended and built again.
 #[unsafe(no_mangle)]

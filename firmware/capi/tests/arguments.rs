@@ -187,6 +187,8 @@ proptest! {
             prop_assert_eq!(known == cede_status::UnknownChoice, control > cede_control::AllWayStop as u8);
             cede_junction_add_speed_limit(junction, of_path % 3, line, s, none);
             cede_junction_set_pace(junction, of_path % 3, s, none);
+            let known = cede_junction_set_order(junction, of_path, u16::from(control), none);
+            prop_assert_eq!(known == cede_status::Ok, of_path < 3);
             cede_junction_set_lateral(junction, s);
             cede_junction_set_tolerance(junction, tolerance);
             cede_junction_build(junction, none);

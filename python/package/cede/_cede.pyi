@@ -172,12 +172,15 @@ class JunctionBuilder:
         control: Literal["unknown", "free", "yield", "stop", "all-way-stop"] = "unknown",
         limits: Sequence[tuple[float, float]] = ...,
         pace: float | None = None,
+        order: int | None = None,
     ) -> int:
         """Add a path along `points`, shape (n, 2), in metres; its number is returned.
 
         `line` (m) is where a vehicle waits: it passes it only with a plan through the junction.
         `limits` are speed limits of the ego: from where on (m), and how fast (m/s).
         `pace` (m/s) is the most speed of pedestrians on it, who may turn back.
+        `order` is its place in the order in which vehicles at rest take turns, by default its
+        number: of two, the one with the larger place has the first turns.
         """
     def variant(
         self,
@@ -186,6 +189,7 @@ class JunctionBuilder:
         length: float,
         width: float,
         line: float | None = None,
+        order: int | None = None,
     ) -> int:
         """Add a path along the points of path `of`, for another class of vehicles."""
     def right_of_way(

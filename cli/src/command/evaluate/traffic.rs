@@ -186,8 +186,12 @@ fn table(rows: &[Summary]) -> String {
             table.add_row(cells(row));
         }
         let Some(first) = block.first() else { continue };
+        let left_out = match first.left_out {
+            0 => String::new(),
+            n => format!("; {n} left out: their way is no path of a junction"),
+        };
         text += &format!(
-            "{}: {} in {}, behind the shield\n{table}\n\n",
+            "{}: {} in {}, behind the shield{left_out}\n{table}\n\n",
             first.site,
             Count(first.vehicles, "vehicle"),
             Count(first.recordings, "recording")
