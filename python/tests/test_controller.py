@@ -263,13 +263,15 @@ def both_go(order):
             for way, place in zip(ways, places, strict=True)
         ]
         junction = builder.build()
-        shields.append((junction, paths, cede.Shield(junction, paths[0], cede.Contract("all-way-stop"))))
+        shields.append(
+            (junction, paths, cede.Shield(junction, paths[0], cede.Contract("all-way-stop")))
+        )
     both = 0
     for period in range(200):
         left = max(50 - period, 0) / 50
         goes = []
         for junction, (own, other), shield in shields:
-            at = junction.conflict(own, other).zones[0][1][0] - 0.1 - 10 * left * left
+            at = junction.conflict(own, other).zones[0][1][0] - 0.01 - 10 * left * left
             ego, track = (junction.vehicle(path, at, 4 * left) for path in (own, other))
             decision = shield.filter(0.1 * period, ego, [cede.Track(1, other, track)], 2.0)
             goes.append(decision.acceleration > 0 and left == 0)
