@@ -2,8 +2,8 @@
 //!
 //! It shares no bound propagation with the prover: it walks a proof's tree and bounds every
 //! neuron of every region by the textbook backward pass of DeepPoly (Singh et al. 2019), layer by
-//! layer with dense matrices, takes nothing from the proof but the cuts and the choice of weights,
-//! multipliers and slopes (any choice is sound, so a wrong one can only fail), and insists on a
+//! layer with dense matrices, takes nothing from the proof but the cuts, which bounds of a larger region to keep, and the choice of
+//! weights, multipliers and slopes (any choice is sound, so a wrong one can only fail), and insists on a
 //! bound that contradicts the conjunction.
 //!
 //! The pass is written once, for intervals rounded outward and for exact numbers. Where intervals
@@ -17,7 +17,7 @@ use super::dyadic::Dyadic;
 use super::enclosure::AffineEnclosure;
 use super::interval::Interval;
 use super::model::Network;
-use super::proof::{Cell, Proof, Refutation, Split};
+use super::proof::{Cell, Proof, Refutation, Split, Tightening};
 use super::property::{Halfspace, InputBox, Query};
 use bounds::{Bounds, Choice, Form, Layers, Least, Range, Side, assume};
 use num_bigint::BigInt;
@@ -213,11 +213,18 @@ const NOTHING: Refutation = Refutation {
 
 /// Whether a claim's numbers are such that it proves something.
 fn fits(claim: &Refutation, conjunction: &[Halfspace]) -> bool {
-    let multipliers = claim.multipliers.iter().map(|(_, m)| m);
-    let usable = |w: &f64| w.is_finite() && *w >= 0.0;
     conjunction.len() == claim.weights.len()
-        && claim.weights.iter().chain(multipliers).all(usable)
-        && claim.slopes.iter().all(|(_, s)| (0.0..=1.0).contains(s))
+        && claim.weights.iter().all(usable)
+        && are_sound(&claim.multipliers, &claim.slopes)
+}
+
+fn usable(weight: &f64) -> bool {
+    weight.is_finite() && *weight >= 0.0
+}
+
+fn are_sound(multipliers: &[(u32, f64)], slopes: &[(u32, f64)]) -> bool {
+    multipliers.iter().all(|(_, m)| usable(m))
+        && slopes.iter().all(|(_, s)| (0.0..=1.0).contains(s))
 }
 
 /// What a proof is about.
@@ -366,7 +373,11 @@ impl Subject<'_> {
             let constant = weight.times(&bound).times(&bounds.unit);
             form.constant = form.constant.plus(&constant.negated());
         }
-        let claimed = Chosen { claim, phases };
+        let claimed = Chosen {
+            slopes: &claim.slopes,
+            multipliers: &claim.multipliers,
+            phases,
+        };
         let Least {
             bound,
             strict: even,
@@ -401,20 +412,22 @@ impl Claimed for Dyadic {
 
 /// The choices of a claim.
 struct Chosen<'a> {
-    claim: &'a Refutation,
+    slopes: &'a [(u32, f64)],
+    multipliers: &'a [(u32, f64)],
     phases: &'a [(usize, bool)],
 }
 
 impl Choice for Chosen<'_> {
     fn slope(&self, neuron: usize) -> Option<f64> {
-        let slopes = &self.claim.slopes;
-        slopes.iter().find(|s| s.0 as usize == neuron).map(|s| s.1)
+        self.slopes
+            .iter()
+            .find(|s| s.0 as usize == neuron)
+            .map(|s| s.1)
     }
 
     fn multiplier(&self, neuron: usize) -> f64 {
         let phase = self.phases.iter().find(|p| p.0 == neuron);
-        let multipliers = &self.claim.multipliers;
-        let size = multipliers.iter().find(|m| m.0 as usize == neuron);
+        let size = self.multipliers.iter().find(|m| m.0 as usize == neuron);
         match (phase, size) {
             (Some((_, on)), Some((_, size))) => {
                 if *on {
@@ -442,9 +455,23 @@ struct Region<'a> {
 impl<'a> Region<'a> {
     /// The bounds of the neurons on the region; `None` if they contradict each other.
     fn tighten(&mut self) -> Option<Bounds<'a, Interval>> {
+        self.tighten_as(false, &[])
+    }
+
+    /// As [`Self::tighten`], or with those of the larger region `kept`, and then these.
+    fn tighten_as(&mut self, kept: bool, tightened: &[Tightening]) -> Option<Bounds<'a, Interval>> {
         let mut bounds = self.subject.bounds(&self.region);
         bounds.layers.clone_from(&self.known);
-        let consistent = bounds.tighten();
+        let phases = &self.phases;
+        let consistent = (kept || bounds.tighten())
+            && tightened.iter().all(|t| {
+                let choice = Chosen {
+                    slopes: &t.slopes,
+                    multipliers: &t.multipliers,
+                    phases,
+                };
+                bounds.tighten_side(t.neuron as usize, t.upper, &choice)
+            });
         self.known.clone_from(&bounds.layers);
         consistent.then_some(bounds)
     }
@@ -452,7 +479,11 @@ impl<'a> Region<'a> {
     /// Confirms what the cell claims; true if nothing is left open.
     fn settle(&mut self, cell: &Cell) -> Result<bool, CheckError> {
         let malformed = |cell, what| CheckError::Malformed { cell, what };
-        let Some(bounds) = self.tighten() else {
+        let sound = |t: &Tightening| are_sound(&t.multipliers, &t.slopes);
+        if !cell.tightened.iter().all(sound) {
+            return Err(malformed(self.cell, "has a bound that does not fit"));
+        }
+        let Some(bounds) = self.tighten_as(cell.kept, &cell.tightened) else {
             return Ok(true);
         };
         if cell.empty {
@@ -563,6 +594,10 @@ impl<'a> Region<'a> {
                 }
                 one.region.upper[index] = at;
                 two.region.lower[index] = at;
+            }
+            Split::Conjunction { index } => {
+                one.open.retain(|&c| c == index);
+                two.open.retain(|&c| c != index);
             }
             Split::Phase { neuron } => {
                 let neuron = neuron as usize;

@@ -82,7 +82,7 @@ fn worst<'a>(conjunction: &'a Conjunction, y: &[f64]) -> (f64, Option<&'a Halfsp
 
 /// Where the descent ends; `None` if the deadline passed.
 #[inline(always)]
-fn descend(
+pub(super) fn descend(
     runner: &mut Runner<'_>,
     region: &InputBox,
     conjunction: &Conjunction,

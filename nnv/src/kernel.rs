@@ -1,4 +1,4 @@
-//! The three inner loops of bound propagation. They run on whatever vector unit the machine has;
+//! The inner loops of bound propagation. They run on whatever vector unit the machine has;
 //! no fused operations, so that every machine computes the same bits.
 
 /// Neurons that are bounded side by side.
@@ -72,10 +72,10 @@ fn tiles<const N: usize>(
     }
 }
 
-/// block[c] += factor·row[c] for every column of the row.
+/// block[c] += factor·row[c] for every column of the row. Rows of sparse networks are mostly zeros.
 #[inline(always)]
 pub(super) fn add_row(block: &mut [Lane], row: &[f64], factor: &Lane) {
-    for (sums, &x) in block.iter_mut().zip(row) {
+    for (sums, &x) in block.iter_mut().zip(row).filter(|(_, x)| **x != 0.0) {
         for (sum, f) in sums.iter_mut().zip(factor) {
             *sum += f * x;
         }
@@ -87,6 +87,15 @@ pub(super) fn add_row(block: &mut [Lane], row: &[f64], factor: &Lane) {
 pub(super) fn add_scaled(sums: &mut [f64], row: &[f64], factor: f64) {
     for (sum, x) in sums.iter_mut().zip(row) {
         *sum += factor * x;
+    }
+}
+
+/// sums += Σ factor·row, for four of them at a time.
+#[inline(always)]
+pub(super) fn add_scaled_4(sums: &mut [f64], terms: [(f64, &[f64]); 4]) {
+    let [(a, p), (b, q), (c, r), (d, s)] = terms;
+    for ((((sum, p), q), r), s) in sums.iter_mut().zip(p).zip(q).zip(r).zip(s) {
+        *sum += (a * p + b * q) + (c * r + d * s);
     }
 }
 

@@ -6,11 +6,14 @@
 #![forbid(unsafe_code)]
 
 mod attack;
+mod backward;
 mod bounder;
+mod dual;
 mod forward;
 mod kernel;
 mod objective;
 mod propagation;
+mod refinement;
 mod relaxation;
 mod search;
 #[cfg(test)]

@@ -53,7 +53,23 @@ const STEPS_WITH_PHASES: usize = 80;
 
 /// Rounding errors are charged so many times over, so that a checker that bounds its own rounding
 /// more coarsely still finds what is claimed.
-const MARGIN: f64 = 64.0;
+pub(super) const MARGIN: f64 = 64.0;
+
+/// Moves weight to the atoms whose excess is greatest, by at most so much of the whole, 1.
+#[inline(always)]
+pub(super) fn shift_weights(weights: &mut [f64], excesses: &[f64], most: f64) {
+    let mean = excesses.iter().sum::<f64>() / excesses.len() as f64;
+    let widest = excesses
+        .iter()
+        .fold(0.0_f64, |w, s| w.max((s - mean).abs()));
+    if weights.len() > 1 && widest > 0.0 {
+        for (weight, excess) in weights.iter_mut().zip(excesses) {
+            *weight = (*weight + most * (excess - mean) / widest).max(0.0);
+        }
+        let total: f64 = weights.iter().sum();
+        weights.iter_mut().for_each(|w| *w /= total);
+    }
+}
 
 impl Ascent {
     /// The best bound found for the conjunction of the atoms at these positions of the workspace:
@@ -293,19 +309,7 @@ impl Ascent {
             .extend(self.forms[..self.weights.len()].iter().map(value));
         let (atoms, assumed) = self.weights.split_at_mut(self.atoms);
         let (excesses, breaches) = self.steps.split_at(self.atoms);
-        if atoms.len() > 1 {
-            let mean = excesses.iter().sum::<f64>() / atoms.len() as f64;
-            let widest = excesses
-                .iter()
-                .fold(0.0_f64, |w, s| w.max((s - mean).abs()));
-            if widest > 0.0 {
-                for (weight, excess) in atoms.iter_mut().zip(excesses) {
-                    *weight = (*weight + 0.5 * length * (excess - mean) / widest).max(0.0);
-                }
-                let total: f64 = atoms.iter().sum();
-                atoms.iter_mut().for_each(|w| *w /= total);
-            }
-        }
+        shift_weights(atoms, excesses, 0.5 * length);
         // Polyak's step, to half beyond the bound 0 so that it is passed.
         let norm: f64 = breaches.iter().map(|b| b * b).sum();
         if norm > 0.0 {

@@ -7,7 +7,7 @@ use super::kernel::{LANES, Lane, padded};
 use super::relaxation::{Lines, Symbols};
 use cede_nnv_check::rounding::{SPARE, underflow};
 use cede_nnv_check::{Activation, AffineEnclosure, InputBox};
-pub(crate) use prepared::{Prepared, PreparedLayer, Weights};
+pub(crate) use prepared::{Prepared, PreparedLayer, SOME_INPUTS, Weights};
 use std::time::Instant;
 
 /// Least and greatest value of a pre-activation.

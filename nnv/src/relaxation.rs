@@ -56,6 +56,18 @@ impl Lines {
         }
     }
 
+    /// Of an activation that is slope·z.
+    pub(super) fn straight(slope: f64) -> Self {
+        Self {
+            lower_slope: slope,
+            lower_offset: 0.0,
+            upper_slope: slope,
+            upper_offset: 0.0,
+            most: f64::INFINITY,
+            free: false,
+        }
+    }
+
     /// Of an input of the network over the linear part of what encloses it.
     pub(super) fn enclosure(input: &AffineEnclosure, region: &InputBox) -> Self {
         Self {

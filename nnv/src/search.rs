@@ -5,21 +5,27 @@
 //! that settles the query ends it.
 //!
 //! Work goes out in rounds: every task takes one region and searches below it, depth first, for a
-//! fixed number of regions; what it leaves open comes back in order. So the answer, the witness,
+//! fixed number of regions; what it leaves open comes back in order. (Where bounding all neurons is
+//! dear, a task is that of [`wide`].) So the answer, the witness,
 //! the proof and the count of regions depend on the problem alone, not on the number of threads,
 //! and no more than the open ends of the running tasks are in memory.
 
 mod node;
+mod phases;
+mod wide;
 
+use super::backward::Frame;
+use super::dual::Dual;
 use super::forward::Runner;
 use super::objective::Ascent;
-use super::propagation::{Prepared, Unbounded, Workspace, is_unstable};
+use super::propagation::{NeuronBounds, Prepared, SOME_INPUTS, Unbounded, Workspace};
+use super::refinement::refine;
 use super::witness::{Witness, is_near};
 use super::{Branching, SearchOptions};
 use cede_nnv_check::check::{confirms, refutes_exactly};
 use cede_nnv_check::proof::{Cell, Proof, Refutation, Split};
 use cede_nnv_check::{Halfspace, InputBox, Network, Query};
-use node::{Node, split_input, split_phase};
+use node::{Node, split_input};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::time::Instant;
@@ -38,11 +44,9 @@ pub(super) enum Found {
 }
 
 /// Regions that one task may bound before it hands back.
-const TASK: usize = 200;
+const TASK: u64 = 200;
 /// Tasks of one round.
 const ROUND: usize = 64;
-/// Up to so many inputs, cutting across them is the likelier to pay; beyond, across phases.
-const SOME_INPUTS: usize = 20;
 /// Up to so many, it nearly always does.
 const FEW_INPUTS: usize = 12;
 /// Regions of the likelier way's first turn; they double from turn to turn.
@@ -71,8 +75,10 @@ pub(super) struct Outcome {
 }
 
 /// A search by one way of branching, as far as it has come.
-struct Tree {
+struct Tree<'p> {
     branching: Branching,
+    /// What its regions have in common, where they are cut across phases.
+    frame: Option<Frame<'p>>,
     stack: Vec<Node>,
     proof: Proof,
     regions: u64,
@@ -107,7 +113,7 @@ impl<'a> Problem<'a> {
             Branching::Inputs => &[Branching::Inputs],
             Branching::Phases => &[Branching::Phases],
         };
-        let mut trees: Vec<Tree> = ways.iter().map(|&way| self.tree(way)).collect();
+        let mut trees: Vec<Tree<'_>> = ways.iter().map(|&way| self.tree(way)).collect();
         let mut turn = if inputs <= FEW_INPUTS {
             8 * FIRST_TURN
         } else {
@@ -141,7 +147,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    fn tree(&self, branching: Branching) -> Tree {
+    fn tree(&self, branching: Branching) -> Tree<'_> {
         let mut proof = Proof::default();
         proof.cells.push(Cell::default());
         let root = Node {
@@ -149,10 +155,12 @@ impl<'a> Problem<'a> {
             bounds: vec![(f64::NEG_INFINITY, f64::INFINITY); self.prepared.neurons].into(),
             phases: Box::default(),
             open: (0_u32..).take(self.query.unsafe_set.len()).collect(),
+            choices: Box::default(),
             cell: 0,
         };
         Tree {
             branching,
+            frame: None,
             stack: vec![root],
             proof,
             regions: 0,
@@ -161,7 +169,14 @@ impl<'a> Problem<'a> {
     }
 
     /// Goes on with a search for about so many regions; what settles the query, if anything does.
-    fn advance(&self, tree: &mut Tree, regions: u64) -> Option<Found> {
+    fn advance<'p>(&'p self, tree: &mut Tree<'p>, regions: u64) -> Option<Found> {
+        if tree.branching == Branching::Phases && tree.frame.is_none() {
+            match self.frame(&mut tree.stack[0].bounds) {
+                Ok(frame) => tree.frame = Some(frame),
+                Err(Late) => return Some(Found::TimeOut),
+            }
+        }
+        let frame = tree.frame.as_ref();
         let end = tree.regions + regions;
         while !tree.stack.is_empty() {
             if tree.regions >= end {
@@ -169,10 +184,13 @@ impl<'a> Problem<'a> {
             }
             let batch = tree.stack.split_off(tree.stack.len().saturating_sub(ROUND));
             let roots: Vec<usize> = batch.iter().map(|node| node.cell).collect();
-            let work = |searcher: &mut Searcher<'_>, node| searcher.work(node);
+            let work = |searcher: &mut Searcher<'_>, node| match searcher.frame {
+                Some(frame) if self.prepared.wide => searcher.work_wide(frame, node),
+                _ => searcher.work(node, TASK),
+            };
             let done: Vec<Done> = batch
                 .into_par_iter()
-                .map_init(|| Searcher::new(self, tree.branching), work)
+                .map_init(|| Searcher::new(self, frame), work)
                 .collect();
             tree.regions += done.iter().map(|d| d.regions).sum::<u64>();
             for (task, root) in done.into_iter().zip(roots) {
@@ -185,6 +203,32 @@ impl<'a> Problem<'a> {
             }
         }
         (!tree.stuck).then_some(Found::Nothing)
+    }
+
+    /// What all regions that are cut across phases have in common, and the bounds of the neurons on
+    /// the whole box.
+    fn frame(&self, bounds: &mut [NeuronBounds]) -> Result<Frame<'_>, Late> {
+        let region = &self.query.region;
+        let bounded = pulp::Arch::new().dispatch(|| {
+            Workspace::default().bound(
+                &self.prepared,
+                region,
+                &[],
+                bounds,
+                &[],
+                &[],
+                Some(self.deadline),
+            )
+        });
+        bounded.map_err(|_| Late)?;
+        let atoms = self.query.unsafe_set.iter().flatten().collect();
+        let mut frame = Frame::new(self.network, &self.prepared, atoms, region, bounds);
+        if self.prepared.wide {
+            let part = (region, &[][..]);
+            let refinement = refine(&frame, part, bounds, self.options.record, self.deadline);
+            frame.set_refinement(refinement.map_err(|_| Late)?);
+        }
+        Ok(frame)
     }
 
     /// Where the atoms of each conjunction lie among all atoms.
@@ -231,15 +275,37 @@ struct Late;
 
 enum Step {
     Refuted,
-    Split(Split, [Node; 2]),
+    Split(Split, Box<[Node; 2]>),
     /// Neither refuted nor divisible.
     Stuck,
     Witness(Witness),
 }
 
+/// A step that is compiled for the machine's vectors: a closure of its size would not be inlined
+/// where it has to be for that.
+struct OneStep<'s, 'a> {
+    searcher: &'s mut Searcher<'a>,
+    node: Node,
+    cell: &'s mut Cell,
+}
+
+impl pulp::NullaryFnOnce for OneStep<'_, '_> {
+    type Output = Result<Step, Late>;
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        match self.searcher.frame {
+            Some(frame) => self.searcher.step_by_phase(frame, self.node, self.cell),
+            None => self.searcher.step(self.node, self.cell),
+        }
+    }
+}
+
 struct Searcher<'a> {
     problem: &'a Problem<'a>,
-    by_phase: bool,
+    /// There is one if regions are cut across phases.
+    frame: Option<&'a Frame<'a>>,
+    dual: Dual,
     workspace: Workspace,
     ascent: Ascent,
     runner: Runner<'a>,
@@ -248,10 +314,11 @@ struct Searcher<'a> {
 }
 
 impl<'a> Searcher<'a> {
-    fn new(problem: &'a Problem<'a>, branching: Branching) -> Self {
+    fn new(problem: &'a Problem<'a>, frame: Option<&'a Frame<'a>>) -> Self {
         Self {
             problem,
-            by_phase: branching == Branching::Phases,
+            frame,
+            dual: Dual::default(),
             workspace: Workspace::default(),
             ascent: Ascent::default(),
             runner: Runner::new(problem.network, &problem.prepared),
@@ -260,8 +327,8 @@ impl<'a> Searcher<'a> {
         }
     }
 
-    /// Searches below a node until nothing is left or the task is used up.
-    fn work(&mut self, mut node: Node) -> Done {
+    /// Searches below a node until nothing is left or so many regions are bounded.
+    fn work(&mut self, mut node: Node, most: u64) -> Done {
         node.cell = 0;
         let mut done = Done {
             found: Found::Nothing,
@@ -273,13 +340,18 @@ impl<'a> Searcher<'a> {
             done.cells.push(Cell::default());
         }
         let arch = pulp::Arch::new();
-        while done.regions < TASK as u64
+        while done.regions < most
             && let Some(node) = done.left.pop()
         {
             done.regions += 1;
             let place = node.cell;
             let mut cell = Cell::default();
-            let Ok(step) = arch.dispatch(|| self.step(node, &mut cell)) else {
+            let step = arch.dispatch(OneStep {
+                searcher: self,
+                node,
+                cell: &mut cell,
+            });
+            let Ok(step) = step else {
                 done.found = Found::TimeOut;
                 break;
             };
@@ -294,7 +366,7 @@ impl<'a> Searcher<'a> {
                         children[0].cell = first + 1;
                         children[1].cell = first;
                     }
-                    done.left.extend(children);
+                    done.left.extend(*children);
                 }
                 Step::Witness(witness) => {
                     done.found = Found::Witness(witness);
@@ -315,6 +387,7 @@ impl<'a> Searcher<'a> {
     #[inline(always)]
     fn step(&mut self, mut node: Node, cell: &mut Cell) -> Result<Step, Late> {
         let problem = self.problem;
+        cell.kept = false;
         let deadline = Some(problem.deadline);
         let atoms: Vec<usize> = node
             .open
@@ -322,30 +395,8 @@ impl<'a> Searcher<'a> {
             .flat_map(|&c| problem.atoms_of(c))
             .collect();
         let record = problem.options.record;
-        let before = (record && !node.phases.is_empty()).then(|| node.bounds.clone());
-        let bounded = self.workspace.bound(
-            &problem.prepared,
-            &node.region,
-            &[],
-            &mut node.bounds,
-            &node.phases,
-            &atoms,
-            deadline,
-        );
-        match bounded {
-            Ok(()) => {}
-            Err(Unbounded::Late) => return Err(Late),
-            Err(Unbounded::Empty) => {
-                if let Some(before) = before
-                    && !self.is_confirmed(&node, None)
-                {
-                    node.bounds = before;
-                    let halves = split_input(node, &[]);
-                    return Ok(halves.map_or(Step::Stuck, |(split, two)| Step::Split(split, two)));
-                }
-                cell.empty = true;
-                return Ok(Step::Refuted);
-            }
+        if let Some(step) = self.tighten(&mut node, &atoms, cell)? {
+            return Ok(step);
         }
         self.scores.clear();
         self.scores.resize(node.region.lower.len(), 0.0);
@@ -384,10 +435,7 @@ impl<'a> Searcher<'a> {
                     continue;
                 }
             }
-            let set = &problem.query.unsafe_set[conjunction as usize];
-            if is_near(set, self.runner.run(&candidate))
-                && let Some(witness) = Witness::near(problem.network, problem.query, &candidate)
-            {
+            if let Some(witness) = self.witness_at(&candidate, conjunction) {
                 return Ok(Step::Witness(witness));
             }
             let exactly = |claim: &Refutation| {
@@ -410,14 +458,10 @@ impl<'a> Searcher<'a> {
             return Ok(Step::Refuted);
         }
         node.open = open.into();
-        let phase = self.by_phase.then(|| self.worst_phase(&node)).flatten();
-        if let Some(neuron) = phase {
-            let children = split_phase(node, neuron);
-            return Ok(Step::Split(Split::Phase { neuron }, children));
-        }
+        node.choices = Box::default();
         let InputBox { lower, upper } = node.region.clone();
         if let Some((split, children)) = split_input(node, &self.scores) {
-            return Ok(Step::Split(split, children));
+            return Ok(Step::Split(split, children.into()));
         }
         // Nothing can be cut any further: the corners are all that there is to try.
         candidates.extend([lower, upper]);
@@ -427,21 +471,62 @@ impl<'a> Searcher<'a> {
         Ok(witness.map_or(Step::Stuck, Step::Witness))
     }
 
+    /// Bounds the neurons of a region, and the forms of these atoms; what that leads to, if the
+    /// region turns out to be empty.
+    ///
+    /// # Errors
+    /// If the deadline passed.
+    #[inline(always)]
+    fn tighten(
+        &mut self,
+        node: &mut Node,
+        atoms: &[usize],
+        cell: &mut Cell,
+    ) -> Result<Option<Step>, Late> {
+        let problem = self.problem;
+        let record = problem.options.record;
+        let before = (record && !node.phases.is_empty()).then(|| node.bounds.clone());
+        let bounded = self.workspace.bound(
+            &problem.prepared,
+            &node.region,
+            &[],
+            &mut node.bounds,
+            &node.phases,
+            atoms,
+            Some(problem.deadline),
+        );
+        match bounded {
+            Ok(()) => Ok(None),
+            Err(Unbounded::Late) => Err(Late),
+            Err(Unbounded::Empty) => {
+                if let Some(before) = before
+                    && !self.is_confirmed(node, None)
+                {
+                    node.bounds = before;
+                    let halves = split_input(node.copy(), &[]);
+                    let halves = halves.map(|(split, two)| Step::Split(split, two.into()));
+                    return Ok(Some(halves.unwrap_or(Step::Stuck)));
+                }
+                cell.empty = true;
+                Ok(Some(Step::Refuted))
+            }
+        }
+    }
+
+    /// The point, or one next to it, if its output is in the conjunction.
+    #[inline(always)]
+    fn witness_at(&mut self, point: &[f64], conjunction: u32) -> Option<Witness> {
+        let Problem { network, query, .. } = self.problem;
+        let set = &query.unsafe_set[conjunction as usize];
+        is_near(set, self.runner.run(point))
+            .then(|| Witness::near(network, query, point))
+            .flatten()
+    }
+
     /// Whether the checker will confirm a claim, or that the region is empty. It is not asked about
     /// networks so large that asking takes long.
     fn is_confirmed(&self, node: &Node, claim: Option<&Refutation>) -> bool {
         let Problem { network, query, .. } = self.problem;
         confirms(network, query, &node.region, &node.phases, claim).unwrap_or(true)
-    }
-
-    /// The unstable ReLU whose relaxation costs the most.
-    fn worst_phase(&self, node: &Node) -> Option<u32> {
-        let symbols = &self.workspace.symbols;
-        let free =
-            |&s: &usize| symbols.lines(s).free && is_unstable(node.bounds[symbols.neuron(s)]);
-        let most = (0..symbols.count())
-            .filter(free)
-            .max_by(|&a, &b| self.slack[a].total_cmp(&self.slack[b]))?;
-        u32::try_from(symbols.neuron(most)).ok()
     }
 }

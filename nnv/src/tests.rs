@@ -10,6 +10,7 @@ use super::propagation::{Prepared, Workspace};
 use super::relaxation::Lines;
 use super::*;
 use cede_nnv_check::check::{CheckError, check};
+use cede_nnv_check::proof::{Split, Tightening};
 use cede_nnv_check::{Activation, Halfspace, InputBox, Layer, Matrix, Query};
 use microlp::{ComparisonOp, LinearExpr, OptimizationDirection, Problem, SolveOutcome};
 use rand::{RngExt, SeedableRng};
@@ -359,6 +360,24 @@ fn the_checker_refuses_what_is_not_a_proof() {
         check(&network, &query(holds), &negative),
         Err(CheckError::Malformed { .. })
     ));
+    let mut steep = proof.clone();
+    steep.cells[0].tightened.push(Tightening {
+        neuron: 8,
+        upper: false,
+        multipliers: Vec::new(),
+        slopes: vec![(0, 1.5)],
+    });
+    assert!(matches!(
+        check(&network, &query(holds), &steep),
+        Err(CheckError::Malformed { .. })
+    ));
+    let mut forgotten = proof.clone();
+    forgotten.cells[leaf].split = Some((Split::Conjunction { index: 0 }, 1 << 20));
+    forgotten.cells[leaf].refuted.clear();
+    assert!(
+        check(&network, &query(holds), &forgotten).is_err(),
+        "the children are missing"
+    );
     let mut circular = proof.clone();
     let inner = circular
         .cells

@@ -93,6 +93,16 @@ fn first_neurons(network: &Network) -> Vec<Option<usize>> {
     first.collect()
 }
 
+/// Layer and place in it of a neuron, counted over all neurons with an activation; `None` if there is
+/// no such neuron.
+fn place(first: &[Option<usize>], neuron: usize) -> Option<(usize, usize)> {
+    let layers = first.iter().enumerate();
+    let (layer, first) = layers
+        .filter_map(|(i, f)| f.map(|f| (i, f)))
+        .rfind(|(_, f)| *f <= neuron)?;
+    Some((layer, neuron - first))
+}
+
 /// Assumes a phase of a ReLU, counted over all neurons with an activation; `None` if there is no
 /// such neuron.
 pub(super) fn assume<N: Number>(
@@ -101,11 +111,8 @@ pub(super) fn assume<N: Number>(
     neuron: usize,
     on: bool,
 ) -> Option<()> {
-    let first = first_neurons(network).into_iter().enumerate();
-    let (layer, first) = first
-        .filter_map(|(i, f)| f.map(|f| (i, f)))
-        .rfind(|(_, f)| *f <= neuron)?;
-    let Range { lower, upper } = layers[layer].get_mut(neuron - first)?;
+    let (layer, i) = place(&first_neurons(network), neuron)?;
+    let Range { lower, upper } = layers[layer].get_mut(i)?;
     let zero = Some(N::zero());
     if on {
         *lower = better(lower.as_ref(), zero, N::greater);
@@ -150,25 +157,61 @@ impl<'a, N: Number> Bounds<'a, N> {
                 if layer.activation == Activation::Relu && (known.is_on() || known.is_off()) {
                     continue;
                 }
-                let side = |sign: f64| {
-                    let mut form = Form::<N>::zero(layer.inputs());
-                    let factor = N::of(sign).times(&N::spread(layer.uncertainty)?);
-                    factor.add_scaled(&mut form.coefficients, layer.weights.row(i));
-                    form.constant = N::of(sign * layer.bias[i]).times(&self.unit);
-                    let least = self.least(index, form, &Usual)?;
-                    Some(least.bound).filter(N::is_known)
-                };
-                let (low, high) = (side(1.0), side(-1.0).map(|b| b.negated()));
-                let lower = better(known.lower.as_ref(), low, N::greater);
-                let upper = better(known.upper.as_ref(), high, lesser);
-                if let (Some(l), Some(u)) = (&lower, &upper)
-                    && l.plus(&u.negated()).sign() == Some(Ordering::Greater)
-                {
+                let (low, high) = (
+                    self.side(index, i, false, &Usual),
+                    self.side(index, i, true, &Usual),
+                );
+                if !self.meet(index, i, low, high) {
                     return false;
                 }
-                self.layers[index][i] = Range { lower, upper };
             }
         }
+        true
+    }
+
+    /// Tightens one side of a neuron's range, by these choices, if there is such a neuron; false if
+    /// that contradicts the other side.
+    pub(super) fn tighten_side(
+        &mut self,
+        neuron: usize,
+        upper: bool,
+        choice: &impl Choice,
+    ) -> bool {
+        let Some((index, i)) = place(&self.first, neuron) else {
+            return true;
+        };
+        if i >= self.layers[index].len() {
+            return true;
+        }
+        let found = self.side(index, i, upper, choice);
+        let (low, high) = if upper { (None, found) } else { (found, None) };
+        self.meet(index, i, low, high)
+    }
+
+    /// A bound of one side of a neuron's range.
+    fn side(&self, index: usize, i: usize, upper: bool, choice: &impl Choice) -> Option<N> {
+        let layer = &self.network.layers()[index];
+        let sign = if upper { -1.0 } else { 1.0 };
+        let mut form = Form::<N>::zero(layer.inputs());
+        let factor = N::of(sign).times(&N::spread(layer.uncertainty)?);
+        factor.add_scaled(&mut form.coefficients, layer.weights.row(i));
+        form.constant = N::of(sign * layer.bias[i]).times(&self.unit);
+        let bound = self.least(index, form, choice)?.bound;
+        let bound = if upper { bound.negated() } else { bound };
+        Some(bound).filter(N::is_known)
+    }
+
+    /// Adds what was found to a neuron's range; false if nothing is left of it.
+    fn meet(&mut self, index: usize, i: usize, low: Option<N>, high: Option<N>) -> bool {
+        let known = &self.layers[index][i];
+        let lower = better(known.lower.as_ref(), low, N::greater);
+        let upper = better(known.upper.as_ref(), high, lesser);
+        if let (Some(l), Some(u)) = (&lower, &upper)
+            && l.plus(&u.negated()).sign() == Some(Ordering::Greater)
+        {
+            return false;
+        }
+        self.layers[index][i] = Range { lower, upper };
         true
     }
 

@@ -5,6 +5,10 @@ use cede_nnv_check::rounding::gamma;
 use cede_nnv_check::{Activation, Halfspace, Matrix, Network};
 use std::sync::Arc;
 
+/// Up to so many inputs, cutting across them is the likelier to pay, and bounds are cheap; beyond,
+/// across phases.
+pub(crate) const SOME_INPUTS: usize = 20;
+
 /// A network and the atoms of a query as the propagation wants them.
 pub(crate) struct Prepared {
     pub(crate) inputs: usize,
@@ -12,6 +16,8 @@ pub(crate) struct Prepared {
     pub(crate) layers: Vec<Arc<PreparedLayer>>,
     /// Neurons with an activation, over all layers.
     pub(crate) neurons: usize,
+    /// Whether bounding all neurons anew in each region is dear: there are many inputs.
+    pub(crate) wide: bool,
     /// How an unstable ReLU is enclosed: [`Lines::relu`]; tests plant unsound lines here.
     pub(crate) enclose: fn(f64, f64) -> Lines,
 }
@@ -49,12 +55,12 @@ pub(crate) struct PreparedLayer {
     pub(super) inputs: usize,
     pub(crate) outputs: usize,
     pub(crate) weights: Weights,
-    pub(super) bias: Vec<f64>,
-    pub(super) activation: Activation,
+    pub(crate) bias: Vec<f64>,
+    pub(crate) activation: Activation,
     pub(super) relative_error: f64,
-    pub(super) uncertainty: f64,
+    pub(crate) uncertainty: f64,
     /// Index of its first neuron among all neurons with an activation.
-    pub(super) first: usize,
+    pub(crate) first: usize,
 }
 
 impl Prepared {
@@ -84,6 +90,7 @@ impl Prepared {
             inputs: network.inputs(),
             layers,
             neurons,
+            wide: network.inputs() > SOME_INPUTS,
             enclose: Lines::relu,
         };
         prepared.followed_by(network.outputs(), atoms)

@@ -1,8 +1,11 @@
 //! A region of the search, and how it is cut in two.
 
+use crate::backward::Choice;
+use crate::dual::Part;
 use crate::propagation::{NeuronBounds, Phase};
 use cede_nnv_check::InputBox;
 use cede_nnv_check::proof::Split;
+use std::sync::Arc;
 
 /// A region: a box and assumed phases, what is known of it, and what is still to be refuted.
 pub(super) struct Node {
@@ -10,18 +13,29 @@ pub(super) struct Node {
     pub(super) bounds: Box<[NeuronBounds]>,
     pub(super) phases: Box<[Phase]>,
     pub(super) open: Box<[u32]>,
+    /// The best that was found for each open conjunction on a larger region, if anything was.
+    pub(super) choices: Box<[Arc<Choice>]>,
     /// Its place in the record.
     pub(super) cell: usize,
 }
 
 impl Node {
-    fn copy(&self) -> Self {
+    pub(super) fn copy(&self) -> Self {
         Self {
             region: self.region.clone(),
             bounds: self.bounds.clone(),
             phases: self.phases.clone(),
             open: self.open.clone(),
+            choices: self.choices.clone(),
             cell: self.cell,
+        }
+    }
+
+    pub(super) fn part(&self) -> Part<'_> {
+        Part {
+            region: &self.region,
+            bounds: &self.bounds,
+            phases: &self.phases,
         }
     }
 }
@@ -64,4 +78,10 @@ pub(super) fn split_phase(node: Node, neuron: u32) -> [Node; 2] {
         node
     };
     [assume(node.copy(), false), assume(node, true)]
+}
+
+/// Open conjunctions and the choices for them.
+pub(super) fn split_pairs(pairs: Vec<(u32, Arc<Choice>)>) -> (Box<[u32]>, Box<[Arc<Choice>]>) {
+    let (open, choices): (Vec<_>, Vec<_>) = pairs.into_iter().unzip();
+    (open.into(), choices.into())
 }

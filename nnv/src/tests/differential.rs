@@ -7,7 +7,7 @@ use super::cases::Case;
 use crate::propagation::Prepared;
 use crate::relaxation::Lines;
 use crate::{Answer, Branching, SearchOptions, verify, verify_prepared};
-use cede_nnv_check::proof::{Cell, Proof, Refutation};
+use cede_nnv_check::proof::{Cell, Proof, Refutation, Tightening};
 use cede_nnv_check::{
     Activation, Certificate, Halfspace, InputBox, Layer, Matrix, Network, Property, Query, Source,
     check, onnx, vnnlib,
@@ -77,6 +77,7 @@ fn one(seed: u64, fault: Fault) -> Tally {
         .seed(seed)
         .branching(ways[(seed % 3) as usize]);
     let mut prepared = Prepared::new(&network, &[]);
+    prepared.wide = seed % 2 == 1;
     (fault.bounds)(&mut prepared);
     let report = |options| {
         let deadline = Instant::now() + Duration::from_millis(40);
@@ -129,8 +130,15 @@ fn is_believed(network: &Network, property: &Property, seed: u64) -> bool {
                 bound: 1.0,
             };
             let refuted = query.unsafe_set.iter().enumerate().map(claim).collect();
+            let tightening = |neuron| Tightening {
+                neuron,
+                upper: seed.is_multiple_of(2),
+                multipliers: vec![(0, size())],
+                slopes: vec![(0, size().min(1.0)), (1, size().min(1.0))],
+            };
             let cell = Cell {
                 refuted,
+                tightened: (0..4).map(tightening).collect(),
                 ..Cell::default()
             };
             let proof = Proof { cells: vec![cell] };
