@@ -80,3 +80,120 @@ fn reach(route: Polyline<'_>, point: Point) -> f32 {
     }
     route.length()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::junction::{ConflictKind, Route};
+
+    fn at(x: f32, y: f32) -> Point {
+        Point::new(x, y)
+    }
+
+    fn route(points: &[(f32, f32)]) -> Route<8> {
+        Route::new(points.iter().map(|&(x, y)| at(x, y))).unwrap()
+    }
+
+    /// A zone of these arc lengths, the ego's and the other's.
+    fn zone(ego: [f32; 2], other: [f32; 2]) -> Zone {
+        let span = |[from, to]: [f32; 2]| Span { from, to };
+        let (ego, other, lead) = (span(ego), span(other), span([-1.0, 1.0]));
+        let kind = ConflictKind::Crossing;
+        Zone {
+            ego,
+            other,
+            lead,
+            kind,
+        }
+    }
+
+    #[test]
+    fn two_pieces_cross_where_one_goes_through_the_other() {
+        let (p, q) = (at(-1.0, 2.0), at(7.0, 2.0));
+        assert_eq!(cross(p, q, at(1.0, 0.0), at(1.0, 8.0)), Some(0.25));
+        assert_eq!(cross(p, q, at(1.0, 8.0), at(1.0, 0.0)), Some(0.25));
+        assert_eq!(cross(p, q, at(0.0, -1.0), at(6.0, 5.0)), Some(0.5));
+        // Beside it, before it, beyond it, and along it.
+        for (r, s) in [
+            (at(1.0, 3.0), at(1.0, 8.0)),
+            (at(1.0, 1.0), at(1.0, 0.0)),
+            (at(-2.0, 0.0), at(-2.0, 8.0)),
+            (at(8.0, 0.0), at(8.0, 8.0)),
+            (at(-1.0, 3.0), at(7.0, 3.0)),
+        ] {
+            assert_eq!(cross(p, q, r, s), None, "{r}, {s}");
+        }
+    }
+
+    #[test]
+    fn a_crossing_in_a_corner_belongs_to_one_piece() {
+        let (p, q) = (at(-4.0, 0.0), at(4.0, 0.0));
+        let [below, corner, above] = [at(0.0, -3.0), at(0.0, 0.0), at(1.0, 3.0)];
+        let crossings = [cross(p, q, below, corner), cross(p, q, corner, above)];
+        assert_eq!(crossings.iter().flatten().count(), 1);
+        let crossings = [
+            cross(below, above, p, corner),
+            cross(below, above, corner, q),
+        ];
+        assert_eq!(crossings.iter().flatten().count(), 1);
+    }
+
+    #[test]
+    fn a_point_is_reached_where_a_route_first_comes_within_the_radius() {
+        let reached = |points: &[(f32, f32)], x, y| reach(route(points).polyline(), at(x, y));
+        let near = |a: f32, b: f32| assert!((a - b).abs() < 1e-5, "{a}, {b}");
+        near(reached(&[(-20.0, 0.0), (20.0, 0.0)], 0.0, 0.0), 15.0);
+        near(reached(&[(-20.0, 3.0), (20.0, 3.0)], 0.0, 0.0), 16.0);
+        // On a later piece, which is oblique: 5 m before the point, which is 10 m along it.
+        let bent = [(-20.0, 0.0), (-6.0, 0.0), (6.0, 16.0)];
+        near(reached(&bent, 0.0, 8.0), 14.0 + 5.0);
+        // It begins within the radius; it ends before it; it never comes there.
+        near(reached(&[(-4.0, 0.0), (20.0, 0.0)], 0.0, 0.0), 0.0);
+        near(reached(&[(-20.0, 0.0), (-6.0, 0.0)], 0.0, 0.0), 14.0);
+        near(reached(&[(6.0, 0.0), (20.0, 0.0)], 0.0, 0.0), 14.0);
+        // It would come there beyond a piece in its middle.
+        let aside = [(-30.0, 0.0), (-20.0, 0.0), (-10.0, 0.0), (-10.0, 9.0)];
+        near(reached(&aside, 0.0, 0.0), 29.0);
+        near(reached(&[(-20.0, 6.0), (20.0, 6.0)], 0.0, 0.0), 40.0);
+        // A corner at the radius, to within rounding, is the end of one piece or the start of the other.
+        near(
+            reached(&[(-20.0, 0.0), (-5.0, 0.0), (-5.0, 9.0)], 0.0, 0.0),
+            15.0,
+        );
+    }
+
+    #[test]
+    fn routes_meet_at_the_first_crossing_within_their_zones() {
+        let ego = route(&[(0.0, 0.0), (30.0, 0.0), (60.0, 0.0)]);
+        // Crosses at x = 50, then at 40, then at 10.
+        let other = route(&[
+            (50.0, -8.0),
+            (50.0, 8.0),
+            (40.0, 8.0),
+            (40.0, -8.0),
+            (10.0, -8.0),
+            (10.0, 8.0),
+        ]);
+        let points = |of: &[Zone]| {
+            let mut zones: Zones = Default::default();
+            for (slot, zone) in zones.iter_mut().zip(of) {
+                *slot = Some(*zone);
+            }
+            conflict_points(ego.polyline(), other.polyline(), &zones, of.first())
+        };
+        let meets = |of: &[Zone], at: (f32, f32)| {
+            let (ego, other) = points(of);
+            let near = (ego - at.0).abs() < 1e-4 && (other - at.1).abs() < 1e-4;
+            assert!(near, "{ego}, {other}, not {at:?}");
+        };
+        let (all, first, last) = ([0.0, 60.0], [5.0, 15.0], [35.0, 55.0]);
+        // Of two crossings on one piece, the one that the ego comes to first.
+        meets(&[zone(last, all)], (35.0, 29.0));
+        meets(&[zone(first, [72.0, 100.0])], (5.0, 75.0));
+        // What is not in a zone does not count; a crossing that no zone has, neither.
+        meets(&[zone(last, [0.0, 10.0])], (45.0, 3.0));
+        meets(&[zone(first, [10.0, 20.0])], (5.0, 10.0));
+        meets(&[zone([-9.0, 20.0], [20.0, 25.0])], (0.0, 20.0));
+        meets(&[], (60.0, 88.0));
+    }
+}

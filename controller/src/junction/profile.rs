@@ -283,4 +283,146 @@ mod tests {
             [10.0, 10.0, 7.0, 5.0]
         );
     }
+
+    /// Pieces of these lengths (m), with a turn to the left, or to the right, by `degrees` before each but the first.
+    fn polygon(lengths: &[f32], degrees: f32) -> Site {
+        let (mut at, mut heading) = (Point::origin(), 0.0_f32);
+        let mut points = std::vec![at];
+        for length in lengths {
+            at += crate::geometry::Vector::new(heading.cos(), heading.sin()) * *length;
+            points.push(at);
+            heading += degrees.to_radians();
+        }
+        site(&Route::new(points).unwrap(), &[], Some(2.0)).unwrap()
+    }
+
+    #[track_caller]
+    fn allows(lengths: &[f32], degrees: f32, speeds: &[(f32, f32)]) {
+        for degrees in [degrees, -degrees] {
+            let site = polygon(lengths, degrees);
+            let profile = site.way(PATH).unwrap().profile();
+            for &(s, speed) in speeds {
+                let is = profile.speed(s);
+                let near = is == speed || (is - speed).abs() < 1e-3;
+                assert!(near, "{is} m/s at {s} m, not {speed}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_bend_is_as_sharp_as_the_path_turns_over_a_window() {
+        const ANY: f32 = f32::INFINITY;
+        // 2 tan(θ/2) over 4 m, half of them on either side of a corner.
+        allows(
+            &[20.0, 20.0],
+            90.0,
+            &[(17.9, ANY), (18.1, 2.0), (21.9, 2.0), (22.1, ANY)],
+        );
+        // Two corners in one window, between straights that do not make it wider: twice 2 tan(22.5°) over 4 m.
+        allows(
+            &[20.0, 2.0, 20.0],
+            45.0,
+            &[(17.9, ANY), (18.1, 2.1974), (23.9, 2.1974), (24.1, ANY)],
+        );
+        // Three, of which a window has two: twice 2 tan(15°) over 5.85 m.
+        let three = [20.0, 3.9, 3.9, 20.0];
+        allows(
+            &three,
+            30.0,
+            &[
+                (17.9, ANY),
+                (18.1, 3.3041),
+                (25.0, 3.3041),
+                (29.7, 3.3041),
+                (29.9, ANY),
+            ],
+        );
+        // Half of the short pieces before and after: 2 tan(30°) over 4 m, from 1 m before to 1 m after.
+        allows(
+            &[2.0, 2.0],
+            60.0,
+            &[(0.9, ANY), (1.1, 2.6321), (2.9, 2.6321), (3.1, ANY)],
+        );
+        // What is a little longer than the piece beside it is on the curve: twice 2 tan(20°) over 7.9 m, or over 4 m.
+        allows(
+            &[5.5, 3.9, 5.5],
+            40.0,
+            &[(5.6, 3.2943), (11.3, 3.2943), (11.5, ANY)],
+        );
+        allows(
+            &[7.0, 3.9, 7.0],
+            40.0,
+            &[(7.1, 2.3441), (12.8, 2.3441), (13.0, ANY)],
+        );
+    }
+
+    #[test]
+    fn every_bend_in_sight_counts() {
+        let site = site(&bend(6.0, 20), &[], Some(2.0)).unwrap();
+        let profile = site.way(PATH).unwrap().profile();
+        let all: Vec<Stretch> = (1..30).filter_map(|corner| profile.bend(corner)).collect();
+        for s in (0..1100_u16).map(|i| 0.1 * f32::from(i)) {
+            let here = all.iter().filter(|it| it.from <= s && s < it.to);
+            let least = here.fold(f32::INFINITY, |least, it| least.min(it.speed));
+            assert_eq!(profile.speed(s), least, "{s}");
+            for (speed, response) in [(5.0, 0.0), (11.0, 1.0), (14.0, 0.0)] {
+                let ahead = all.iter().filter(|it| s < it.to);
+                let slow = |it: &Stretch| slowing(it.speed, it.from - s, speed, SMOOTH + response);
+                let least = ahead.map(slow).fold(f32::INFINITY, f32::min);
+                let is = profile.acceleration(s, speed, response);
+                assert!(
+                    is == least || is > 1.4 && least > 1.4,
+                    "{is}, {least} at {s}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_limit_ahead_is_come_down_to_and_one_behind_is_kept() {
+        let site = site(
+            &bend(12.0, 12),
+            &[(0.0, 20.0), (40.0, 5.0), (60.0, 9.0)],
+            None,
+        )
+        .unwrap();
+        let profile = site.way(PATH).unwrap().profile();
+        let near = |a: f32, b: f32| assert!((a - b).abs() < 1e-3, "{a}, {b}");
+        near(
+            profile.acceleration(30.0, 10.0, 0.5),
+            slowing(5.0, 10.0, 10.0, 1.0),
+        );
+        near(profile.acceleration(40.0, 10.0, 0.0), -10.0);
+        near(profile.acceleration(70.0, 4.0, 0.5), 5.0);
+    }
+
+    proptest! {
+        /// At `COMFORT` it comes down to what is allowed just there.
+        #[test]
+        fn what_is_left_after_some_time_is_enough_to_slow_down(
+            allowed in 0.0_f32..15.0, distance in 0.0_f32..200.0, speed in 0.0_f32..20.0, time in 0.3_f32..1.5,
+        ) {
+            let then = speed + slowing(allowed, distance, speed, time) * time;
+            if then > allowed + 1e-3 && speed > allowed {
+                let left = distance - 0.5 * (speed + then) * time;
+                let needs = (then * then - allowed * allowed) / (2.0 * COMFORT);
+                prop_assert!((left - needs).abs() < 0.02 * (1.0 + distance), "{left} m, {needs} m");
+            }
+            if speed <= allowed {
+                prop_assert!(then >= allowed - 1e-3);
+            }
+        }
+    }
+
+    #[test]
+    fn one_that_is_there_before_the_time_is_over_brakes_at_twice_comfort_at_most() {
+        let near = |a: f32, b: f32| assert!((a - b).abs() < 1e-3, "{a}, {b}");
+        near(slowing(10.0, 0.0, 5.0, 0.5), 10.0);
+        near(slowing(5.0, 100.0, 10.0, 0.5), 14.895);
+        near(slowing(5.0, 2.5, 6.0, 0.5), -2.2);
+        near(slowing(5.0, 1.0, 6.0, 0.5), -3.0);
+        near(slowing(5.0, 0.0, 6.0, 0.5), -2.0);
+        near(slowing(5.0, -1.0, 6.0, 0.5), -2.0);
+        near(slowing(5.0, 5.0, 5.0, 0.5), 1.3149);
+    }
 }

@@ -284,3 +284,146 @@ fn points_on_a_straight_line_are_left_out_and_bends_are_kept() {
         assert_eq!(kept.pose(s), route.pose(s), "{s}");
     }
 }
+
+#[test]
+fn numbers_at_the_ends_of_their_ranges_are_taken() {
+    let side = |length: f32, width: f32| {
+        let footprint = Footprint { length, width };
+        Junction::<1, 4>::builder()
+            .path(&east(), Class::Car, footprint)
+            .is_ok()
+    };
+    assert!(side(40.0, 40.0) && !side(40.0, 40.1) && !side(40.1, 40.0) && !side(5.0, 0.0));
+    let long = |length: f32| {
+        let route = route(&[(0.0, 0.0), (length, 0.0)]);
+        Junction::<1, 4>::builder()
+            .path(&route, Class::Car, CAR)
+            .is_ok()
+    };
+    assert!(long(512.0) && !long(512.01));
+    let [first, ..] = ids();
+    let line = |s: f32| builder::<1>().line(first, s).is_ok();
+    assert!([0.0, 50.0, 100.0].into_iter().all(line));
+    let pace = |pace: f32| builder::<1>().pace(first, pace).is_ok();
+    assert!(pace(0.1) && pace(10.0));
+    assert!(!pace(0.0) && !pace(-1.0) && !pace(10.1) && !pace(f32::NAN));
+    let limit = |from: f32, speed: f32| builder::<1>().speed_limit(first, from, speed).is_ok();
+    assert!(limit(0.0, 0.1) && limit(100.0, 100.0));
+    for (from, speed) in [
+        (-0.1, 5.0),
+        (100.1, 5.0),
+        (f32::NAN, 5.0),
+        (50.0, 0.0),
+        (50.0, 100.1),
+        (50.0, f32::NAN),
+    ] {
+        assert!(!limit(from, speed), "{speed} m/s from {from} m");
+    }
+    let lateral = |most: f32| builder::<1>().lateral(most).clone().build().is_ok();
+    assert!(lateral(0.1) && lateral(20.0) && lateral(f32::INFINITY));
+    assert!(!lateral(0.0) && !lateral(-1.0) && !lateral(20.1) && !lateral(f32::NAN));
+    let tolerance = |most: f32| builder::<1>().tolerance(most).clone().build().is_ok();
+    assert!(tolerance(0.0) && tolerance(1.0));
+}
+
+#[test]
+fn what_is_said_of_a_path_is_kept_for_that_path() {
+    let mut builder = builder::<2>();
+    let [east, north, ramp, lorry] = ids();
+    builder.pace(north, 1.5).unwrap();
+    builder.order(ramp, 77).unwrap();
+    builder.control(east, Control::Yield).unwrap();
+    builder.line(lorry, 12.0).unwrap();
+    let junction = builder.build().unwrap();
+    let of = |get: fn(&Path) -> u16| ids().map(|id| get(junction.path(id).unwrap()));
+    assert_eq!(of(|path| (10.0 * path.pace()) as u16), [30, 15, 30, 30]);
+    assert_eq!(of(Path::order), [0, 1, 77, 3]);
+    assert_eq!(
+        of(|path| u16::from(path.control() == Control::Yield)),
+        [1, 0, 0, 0]
+    );
+    assert_eq!(of(|path| u16::from(path.waits_at_line())), [0, 0, 0, 1]);
+    assert_eq!(junction.path(lorry).unwrap().line(), 12.0);
+}
+
+#[test]
+fn a_variant_has_what_was_said_of_its_path_and_its_own_place() {
+    let mut builder = Junction::<3, 8>::builder();
+    let first = builder.path(&east(), Class::Car, CAR).unwrap();
+    builder.speed_limit(first, 0.0, 7.0).unwrap();
+    builder.control(first, Control::Stop).unwrap();
+    let variant = builder.variant(first, Class::Lorry, LORRY).unwrap();
+    builder.speed_limit(first, 0.0, 5.0).unwrap();
+    let junction = builder.build().unwrap();
+    let path = junction.path(variant).unwrap();
+    assert_eq!((path.order(), path.control()), (1, Control::Stop));
+    assert_eq!((path.class(), path.footprint()), (Class::Lorry, LORRY));
+    assert_eq!(junction.way(variant).unwrap().profile().speed(1.0), 7.0);
+}
+
+#[test]
+fn the_last_word_on_a_right_of_way_counts() {
+    let mut builder = builder::<4>();
+    let [east, north, ..] = ids();
+    builder.priority(east, north, Priority::Signed).unwrap();
+    builder.priority(north, east, Priority::Unsigned).unwrap();
+    let junction = builder.build().unwrap();
+    let said = |ego, other| {
+        let conflict = junction.conflict(ego, other).unwrap();
+        (conflict.right_of_way, conflict.priority)
+    };
+    assert_eq!(said(north, east), (RightOfWay::Ego, Priority::Unsigned));
+    assert_eq!(said(east, north), (RightOfWay::Other, Priority::Unsigned));
+}
+
+#[test]
+fn a_point_is_left_out_if_it_is_within_a_millimetre_of_the_line_past_it() {
+    let kept = |points: &[(f32, f32)]| {
+        let mut builder = Junction::<1, 32>::builder();
+        let path = builder.path(&route(points), Class::Car, CAR).unwrap();
+        let junction = builder.build().unwrap();
+        let points = junction.polyline(path).unwrap().points();
+        points
+            .iter()
+            .map(|point| point.x)
+            .collect::<std::vec::Vec<_>>()
+    };
+    assert_eq!(
+        kept(&[(0.0, 0.0), (10.0, 0.0009), (20.0, 0.0)]),
+        [0.0, 20.0]
+    );
+    assert_eq!(
+        kept(&[(0.0, 0.0), (10.0, 0.0011), (20.0, 0.0)]),
+        [0.0, 10.0, 20.0]
+    );
+    assert_eq!(
+        kept(&[(0.0, 0.0), (10.0, -0.0011), (20.0, 0.0)]),
+        [0.0, 10.0, 20.0]
+    );
+    // Off the origin, along an oblique line, and a curve that leaves the line bit by bit.
+    assert_eq!(
+        kept(&[(50.0, 50.0), (53.0, 54.0), (56.0, 58.0), (62.0, 66.0)]),
+        [50.0, 62.0]
+    );
+    assert_eq!(
+        kept(&[(0.0, 0.0), (10.0, 0.0), (20.0, 0.0009), (30.0, 0.0045)]),
+        [0.0, 20.0, 30.0]
+    );
+    // So many in a row and no more.
+    let straight: std::vec::Vec<_> = (0..16).map(|i| (i as f32, 0.0)).collect();
+    assert_eq!(kept(&straight), [0.0, 15.0]);
+}
+
+#[test]
+fn no_more_than_sixteen_points_in_a_row_are_left_out() {
+    let points = (0..40_u8).map(|i| Point::new(f32::from(i), 0.0));
+    let route = Route::<64>::new(points).unwrap();
+    let mut builder = Junction::<1, 8>::builder();
+    let path = builder.path(&route, Class::Car, CAR).unwrap();
+    let junction = builder.build().unwrap();
+    let kept = junction.polyline(path).unwrap().points().iter();
+    assert_eq!(
+        kept.map(|point| point.x).collect::<std::vec::Vec<_>>(),
+        [0.0, 17.0, 34.0, 39.0]
+    );
+}

@@ -285,3 +285,149 @@ fn follow(
     let above = Real::max(most - followed[1], 0.0);
     [followed[0] - left * below, followed[1] + left * above]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shield::contract::tests::INEXACT;
+
+    const WORST: Contract = Contract::WORST_CASE;
+
+    #[track_caller]
+    fn near(a: [f32; 2], b: [f32; 2]) {
+        let near = |i: usize| (a[i] - b[i]).abs() < 1e-4;
+        assert!(near(0) && near(1), "{a:?}, {b:?}");
+    }
+
+    #[track_caller]
+    fn acts(contract: &Contract, inherited: &Inherited<f32>, expected: &[(f32, [f32; 2], bool)]) {
+        let parts: std::vec::Vec<_> = inherited.parts(contract).collect();
+        assert_eq!(parts.len(), expected.len(), "{parts:?}");
+        for (part, &(time, bounds, later)) in parts.iter().zip(expected) {
+            near([part.time, 0.0], [time, 0.0]);
+            near(part.bounds, bounds);
+            assert_eq!(part.later, later, "{parts:?}");
+        }
+    }
+
+    #[test]
+    fn a_command_is_off_by_a_share_and_by_what_nobody_commands() {
+        let both = |contract: &Contract, command: f32| {
+            [weakest(contract, command), strongest(contract, command)]
+        };
+        near(both(&INEXACT, 2.0), [1.0, 3.0]);
+        near(both(&INEXACT, -2.0), [-3.0, -1.0]);
+        assert_eq!(both(&WORST, -2.0), [-2.0; 2]);
+        near(anything(&INEXACT), [-8.0, 3.0]);
+        near(anything(&WORST), [-3.0, 3.0]);
+    }
+
+    #[test]
+    fn an_ego_that_stands_braked_starts_later_by_what_its_lag_keeps() {
+        let held = |least, most| hold(&INEXACT, least, most);
+        // 0.2 s of 4 m/s², by the root of 1 + 4/2.
+        near([held(-4.0, 2.0), held(1.0, 2.0)], [-0.461_88, 0.0]);
+        assert_eq!(hold(&WORST, -4.0, 2.0), 0.0);
+    }
+
+    #[test]
+    fn what_is_left_of_an_acceleration_falls_with_time() {
+        let follows = |had, followed| follow(&INEXACT, had, followed, 0.3);
+        // 0.2 s of 0.5 s are left.
+        near(follows([-2.0, 1.0], [0.0, 3.0]), [-0.8, 3.0]);
+        near(follows([-1.0, 4.0], [0.0, 1.0]), [-0.4, 2.2]);
+        near(follows([1.0, 2.0], [0.0, 3.0]), [0.0, 3.0]);
+        near(follow(&WORST, [-2.0, 4.0], [0.0, 1.0], 0.0), [0.0, 1.0]);
+    }
+
+    #[test]
+    fn what_acts_is_divided_where_the_first_period_ends() {
+        let mut inherited = Inherited { parts: Vec::new() };
+        inherited.prepend(0.3, [-1.0, 1.0]);
+        inherited.prepend(0.05, [-2.0, 2.0]);
+        inherited.prepend(0.0, [-3.0, 3.0]);
+        // A period is 0.08 s at least.
+        let (one, two) = ([-1.0, 1.0], [-2.0, 2.0]);
+        acts(
+            &INEXACT,
+            &inherited,
+            &[(0.05, two, false), (0.03, one, false), (0.22, one, true)],
+        );
+        assert_eq!(inherited.bounds(), two);
+        let all = Inherited::all(&WORST, one);
+        acts(&WORST, &all, &[(0.1, one, false)]);
+    }
+
+    #[test]
+    fn commands_in_flight_act_until_the_next_one_is_in_effect() {
+        let contract = WORST.to_builder().latency(0.25).build().unwrap();
+        let at = Instant::from_millis;
+        let mut commands = Commands::unknown();
+        let any = [-3.0, 3.0];
+        acts(
+            &contract,
+            &commands.inherited(&contract, at(0)),
+            &[(0.1, any, false), (0.15, any, true)],
+        );
+        commands.give(&contract, 1.0, at(0));
+        commands.give(&contract, 2.0, at(100));
+        let (last, both) = ([2.0; 2], [1.0, 2.0]);
+        acts(
+            &contract,
+            &commands.inherited(&contract, at(200)),
+            &[
+                (0.05, any, false),
+                (0.05, both, false),
+                (0.05, both, true),
+                (0.1, last, true),
+            ],
+        );
+        // When the last one was given, anything before the first one was.
+        assert_eq!(commands.in_effect(&contract), any);
+        assert_eq!(commands.since_last(&contract), any);
+        commands.give(&contract, 0.5, at(200));
+        commands.give(&contract, 0.5, at(300));
+        assert_eq!(commands.in_effect(&contract), [0.5, 2.0]);
+    }
+
+    #[test]
+    fn with_a_lag_what_the_ego_had_counts_as_well() {
+        let mut contract = INEXACT;
+        (contract.ego.gain, contract.ego.disturbance) = (0.0, 0.0);
+        (contract.jitter, contract.latency) = (0.0, 0.05);
+        let at = Instant::from_millis;
+        let mut commands = Commands::unknown();
+        for (command, millis) in [(-6.0, 0), (-6.0, 100), (1.0, 200), (1.0, 300)] {
+            commands.give(&contract, command, at(millis));
+        }
+        // When the last one was given only it and the one before acted; the drivetrain had more.
+        assert_eq!(commands.in_effect(&contract), [1.0; 2]);
+        let [least, most] = commands.since_last(&contract);
+        assert!(
+            (-6.0..-3.0).contains(&least) && (1.0..2.0).contains(&most),
+            "{least}, {most}"
+        );
+        let inherited = commands.inherited(&contract, at(400));
+        let parts: std::vec::Vec<_> = inherited.parts(&contract).collect();
+        // What it has until a lag is over; then one command for the latency and a lag.
+        let times: std::vec::Vec<_> = parts.iter().map(|part| part.time).collect();
+        near([times[0] + times[1], times.iter().sum()], [0.2, 0.25]);
+        assert!(parts[0].bounds[0] < 0.0 && parts[0].bounds[0] > 0.7 * least);
+        assert_eq!(parts.last().unwrap().bounds, [1.0; 2]);
+    }
+
+    #[test]
+    fn when_more_commands_are_in_flight_than_there_is_room_for_the_oldest_may_be_anything() {
+        let contract = WORST.to_builder().latency(0.9).build().unwrap();
+        let mut commands = Commands::unknown();
+        for i in 0..30 {
+            commands.give(&contract, 1.0, Instant::from_millis(100 * i));
+        }
+        assert_eq!(commands.in_effect(&contract), [1.0; 2]);
+        // Given too fast, those of the last 0.5 s are all that is known.
+        for i in 0..30 {
+            commands.give(&contract, 1.0, Instant::from_millis(3000 + 50 * i));
+        }
+        assert_eq!(commands.in_effect(&contract), [-3.0, 3.0]);
+    }
+}

@@ -71,3 +71,73 @@ pub(super) fn nearest<V>(
     }
     found
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shield::contract::tests::INEXACT;
+
+    fn near(a: f32, b: f32) {
+        assert!((a - b).abs() < 1e-4, "{a}, {b}");
+    }
+
+    #[test]
+    fn the_grid_goes_from_full_braking_to_full_acceleration() {
+        let mut ego = Contract::WORST_CASE.ego;
+        (ego.acceleration, ego.braking) = (2.0, 4.0);
+        for (i, acceleration) in [(0, -4.0), (3, -2.5), (6, -1.0), (8, 0.0), (12, 2.0)] {
+            near(grid(&ego, i), acceleration);
+        }
+    }
+
+    #[test]
+    fn what_may_be_commanded_reaches_the_limit_and_not_more() {
+        let contract = Contract::builder().speed_error(0.2).build().unwrap();
+        // 0.8 m/s are left, and 0.4: what is in effect takes 0.3 of them if it accelerates.
+        near(most(&contract, 14.0, 3.0), 3.0);
+        near(most(&contract, 14.4, 3.0), 1.0);
+        near(most(&contract, 14.4, -1.0), 2.0);
+        near(most(&contract, 15.2, -1.0), 0.0);
+        near(most(&contract, 5.0, 0.0), 3.0);
+    }
+
+    #[test]
+    fn an_inexact_ego_is_held_below_the_limit_whatever_becomes_of_its_command() {
+        let mut contract = INEXACT;
+        (contract.jitter, contract.latency, contract.speed_error) = (0.0, 0.1, 0.0);
+        contract.ego.lag = 0.0;
+        // 1.5 m/s² are left, 0.4, none: of them 0.5 are nobody's, and a quarter may be in excess, or not achieved.
+        near(most(&contract, 14.7, 0.0), 0.8);
+        near(most(&contract, 14.92, 0.0), -0.1 / 0.75);
+        near(most(&contract, 14.98, 0.0), -0.4 / 0.75);
+        near(most(&contract, 15.0, 0.0), -0.5 / 0.75);
+        near(most(&contract, 16.0, 0.0), -0.5 / 0.75);
+        near(most(&contract, 5.0, 0.0), 2.0);
+    }
+
+    #[test]
+    fn what_is_allowed_is_between_full_braking_and_the_most() {
+        let ego = Contract::WORST_CASE.ego;
+        let of = |acceleration| allowed(&ego, 1.0, acceleration);
+        assert_eq!(
+            [2.0, 1.0, 0.5, -3.0, -3.5].map(of),
+            [1.0, 1.0, 0.5, -3.0, -3.0]
+        );
+        assert_eq!(of(f32::NAN), -3.0);
+    }
+
+    #[test]
+    fn the_nearest_of_the_grid_is_found_and_of_two_the_lower() {
+        let ego = Contract::WORST_CASE.ego;
+        let found = |most, wanted, but: f32| {
+            let check = |candidate: f32| (candidate != but).then_some(());
+            nearest(&ego, most, wanted, check).map(|(found, ())| found)
+        };
+        assert_eq!(found(3.0, 0.1, 9.0), Some(0.0));
+        assert_eq!(found(3.0, 0.2, 0.0), Some(0.5));
+        assert_eq!(found(0.7, 3.0, 9.0), Some(0.7));
+        let ends = |candidate: f32| (candidate.abs() == 3.0).then_some(());
+        assert_eq!(nearest(&ego, 3.0, 0.0, ends), Some((-3.0, ())));
+        assert_eq!(nearest::<()>(&ego, 3.0, 0.0, |_| None), None);
+    }
+}

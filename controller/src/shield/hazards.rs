@@ -207,3 +207,52 @@ fn granted(
     // slack before it.
     settled && zone.other.from - 0.5 * contract.slack >= farthest.rest(rule.braking)
 }
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::shield::rules::Sound;
+
+    /// These hazards and no others.
+    pub(in crate::shield) fn just(all: &[Hazard]) -> Hazards {
+        let mut hazards = Hazards::new();
+        for hazard in all {
+            hazards.insert::<Sound>(*hazard);
+        }
+        hazards.look_beyond();
+        hazards
+    }
+
+    /// All there can be: three zones of each of 8 others (24, if there may be many), 8 edges of sight and 4 pedestrians, and
+    /// one that is closed.
+    #[test]
+    fn as_many_hazards_as_there_can_be_are_kept_in_order() {
+        let count = if cfg!(feature = "many-others") {
+            109_u8
+        } else {
+            61
+        };
+        let mut hazards = Hazards::new();
+        for i in 0..count {
+            let target = f32::from((u16::from(i) * 3 % u16::from(count)) as u8);
+            hazards.insert::<Sound>(Hazard {
+                who: Who::Unwatched(0),
+                zone: 0,
+                suspect: false,
+                yields: false,
+                target,
+                limit: target,
+                rest: target,
+                rest_beyond: FAR,
+                passage: Passage::Never,
+            });
+        }
+        let targets: std::vec::Vec<_> = hazards.iter().map(|hazard| hazard.target).collect();
+        let sorted: std::vec::Vec<_> = (0..count).map(f32::from).collect();
+        assert_eq!(targets, sorted);
+        hazards.look_beyond();
+        let beyond: std::vec::Vec<_> = hazards.iter().map(|hazard| hazard.rest_beyond).collect();
+        assert_eq!(beyond[..2], [1.0, 2.0]);
+        assert_eq!(beyond.last(), Some(&FAR));
+    }
+}

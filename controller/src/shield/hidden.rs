@@ -238,3 +238,123 @@ impl Hidden {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Footprint, Point};
+    use crate::junction::{Class, Junction, Route};
+    use crate::shield::rules::Sound;
+
+    const PATH: PathId = PathId::new(1);
+    const WORST: Contract = Contract::WORST_CASE;
+
+    /// The ego's road, one that crosses it, and one apart.
+    fn site() -> Junction<3, 6, 1> {
+        let mut builder = Junction::builder();
+        for ends in [
+            [(-50.0, 0.0), (50.0, 0.0)],
+            [(0.0, -50.0), (0.0, 50.0)],
+            [(-50.0, 30.0), (-30.0, 30.0)],
+        ] {
+            let route = Route::<2>::new(ends.map(|(x, y)| Point::new(x, y))).unwrap();
+            builder.path(&route, Class::Car, Footprint::PAPER).unwrap();
+        }
+        builder.build().unwrap()
+    }
+
+    fn sight(path: PathId, from: f32, speed: f32) -> Sight {
+        Sight { path, from, speed }
+    }
+
+    fn at(millis: u64) -> Instant {
+        Instant::from_millis(millis)
+    }
+
+    /// Where the one out of sight may be, and how fast, at most.
+    fn most(hidden: &Hidden) -> [f32; 2] {
+        let bounds = hidden.edges[0].bounds::<Sound>(&WORST, hidden.now);
+        [bounds.s.to, bounds.speed.to]
+    }
+
+    #[track_caller]
+    fn near(a: [f32; 2], b: [f32; 2]) {
+        assert!(
+            (a[0] - b[0]).abs() < 1e-3 && (a[1] - b[1]).abs() < 1e-3,
+            "{a:?}, {b:?}"
+        );
+    }
+
+    #[test]
+    fn one_out_of_sight_comes_on_until_more_is_seen() {
+        let site = site();
+        let way = site.way(PathId::new(0)).unwrap();
+        let mut hidden = Hidden::new();
+        let mut look = |now, told: Option<(f32, f32)>| {
+            if let Some((from, speed)) = told {
+                hidden
+                    .tell(way, at(now), &[sight(PATH, from, speed)])
+                    .unwrap();
+            }
+            hidden.advance(at(now));
+            hidden.look::<Sound>(&WORST);
+            (most(&hidden), hidden.edges[0].fresh)
+        };
+        assert_eq!(look(100, Some((30.0, 10.0))), ([30.0, 10.0], true));
+        // Nothing is said: it comes on. Then less is in sight, and more.
+        let (now, fresh) = look(600, None);
+        near(now, [35.375, 11.5]);
+        assert!(!fresh);
+        near(look(700, Some((90.0, 14.0))).0, [36.54, 11.8]);
+        near(look(800, Some((33.0, 14.0))).0, [33.0, 12.1]);
+        near(look(900, Some((33.0, 9.0))).0, [33.0, 9.0]);
+        // It is no faster than the contract lets it be.
+        near(look(60_000, Some((33.0, 40.0))).0, [33.0, 15.0]);
+        hidden.advance(at(60_100));
+        let before = most(&hidden);
+        hidden.rebase::<Sound>(&WORST);
+        assert_eq!(hidden.edges[0].at, at(60_100));
+        near(most(&hidden), before);
+    }
+
+    #[test]
+    fn what_is_told_is_on_a_path_with_a_speed() {
+        let site = site();
+        let way = site.way(PathId::new(0)).unwrap();
+        let tell = |path, from, speed| Hidden::new().tell(way, at(0), &[sight(path, from, speed)]);
+        for (from, speed) in [
+            (0.0, 10.0),
+            (100.0, 10.0),
+            (5.0, Vehicle::MAX_SPEED),
+            (5.0, 0.1),
+        ] {
+            assert_eq!(tell(PATH, from, speed), Ok(()));
+        }
+        for value in [-0.1, 100.1] {
+            let (path, length) = (PATH, 100.0);
+            let refused = SightError::From {
+                path,
+                value,
+                length,
+            };
+            assert_eq!(tell(PATH, value, 10.0), Err(refused));
+        }
+        for value in [0.0, -1.0, Vehicle::MAX_SPEED + 1.0] {
+            assert_eq!(
+                tell(PATH, 5.0, value),
+                Err(SightError::Speed { path: PATH, value })
+            );
+        }
+        let path = PathId::new(3);
+        assert_eq!(tell(path, 5.0, 5.0), Err(SightError::Path { path }));
+        // A path that does not meet the ego's takes no room.
+        let many = [sight(PathId::new(2), 5.0, 5.0); 9];
+        assert_eq!(Hidden::new().tell(way, at(0), &many), Ok(()));
+        let many = [sight(PATH, 5.0, 5.0); 9];
+        assert_eq!(
+            Hidden::new().tell(way, at(0), &many),
+            Err(SightError::TooMany)
+        );
+        assert_eq!(Hidden::new().tell(way, at(0), &many[1..]), Ok(()));
+    }
+}

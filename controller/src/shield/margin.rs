@@ -209,3 +209,107 @@ pub fn arrival<R: Real>(contract: &Contract, distance: R, speed: R) -> R {
     let (time, _) = Reach::start(speed).until(distance, R::of(acceleration), R::of(cap));
     time
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shield::contract::tests::INEXACT;
+
+    const WORST: Contract = Contract::WORST_CASE;
+
+    #[track_caller]
+    fn near(a: f32, b: f32) {
+        assert!((a - b).abs() < 1e-4 * (1.0 + b.abs()), "{a}, {b}");
+    }
+
+    #[track_caller]
+    fn reaches(reach: Reach<f32>, distance: f32, speed: f32) {
+        near(reach.distance, distance);
+        near(reach.speed, speed);
+    }
+
+    fn departs(latency: f32) -> Departure<f32> {
+        let contract = WORST.to_builder().latency(latency).speed_error(0.2);
+        let contract = contract.build().unwrap();
+        let inherited = Inherited::all(&contract, [-1.0, 2.0]);
+        departure(&contract, 10.0, &inherited, 0.5)
+    }
+
+    /// What is inherited for the latency; then the command, or going, until the next one is followed.
+    #[test]
+    fn a_departure_is_what_is_inherited_and_then_what_is_commanded() {
+        let now = departs(0.1);
+        reaches(now.braking, 1.03 + 1.0425, 10.45);
+        reaches(now.most, 1.03 + 1.055, 10.7);
+        reaches(now.least, 0.975 + 0.9725, 9.75);
+        // In half a period, what is commanded acts from then on.
+        let soon = departs(0.05);
+        reaches(soon.braking, 0.5125 + 0.515_625 + 0.516_875, 10.35);
+        reaches(soon.most, 0.5125 + 0.515_625 + 0.520, 10.475);
+        reaches(soon.least, 0.488_75 + 0.488_125 + 0.489_375, 9.8);
+        // After a period, going may act as well as what is inherited.
+        let late = departs(0.25);
+        reaches(late.braking, 1.03 + 1.5825 + 1.0725, 10.75);
+        reaches(late.most, 1.03 + 1.593_75 + 1.1, 11.15);
+        reaches(late.least, 0.975 + 1.443_75 + 0.9575, 9.6);
+    }
+
+    #[test]
+    fn the_slowest_inexact_ego_gives_way_to_what_nobody_commands() {
+        near(fade(&INEXACT), 1.0 / 0.75);
+        near(unlimited(&INEXACT), 15.0 - 6.448_333);
+        near(unlimited(&WORST), 14.1);
+    }
+
+    #[test]
+    fn a_target_is_cleared_by_going_from_the_least_on() {
+        let least = |distance, speed| Reach { distance, speed };
+        let (time, speed) = clearing(&WORST, least(2.0, 10.0), 12.0);
+        near(time, 0.883_04 + 0.2);
+        near(speed, 160.0_f32.sqrt());
+        // As fast as its limiter lets it be, after 0.62 s; from below 0 after 2 s at rest.
+        let (time, speed) = clearing(&INEXACT, least(2.0, 9.0), 12.0);
+        near(time, 10.0 / 8.551_667 + 0.62);
+        near(speed, 8.551_667);
+        let (time, speed) = clearing(&INEXACT, least(2.0, -0.5), 12.0);
+        near(time, 2.0 + 8.944_27 + 0.62);
+        near(speed, 5.0_f32.sqrt());
+    }
+
+    #[test]
+    fn a_plan_goes_for_whole_periods_that_are_enough() {
+        let of = |clears| periods(&WORST, clears);
+        assert_eq!([0.1, 0.11, 0.25, 0.35, 5.05].map(of), [0, 1, 2, 3, 50]);
+        assert_eq!(periods(&WORST, 0.1 + 0.1), 1);
+    }
+
+    #[test]
+    fn margins_are_what_is_left_of_a_distance() {
+        let contract = WORST.to_builder().slack(0.05).build().unwrap();
+        near(stops_short(&contract, 10.0, 4.0), 5.95);
+        let rush = rush(&contract, 10.0, 0.5);
+        reaches(rush, 5.375, 11.5);
+        near(clears_before(&contract, 10.0, rush), 4.575);
+        near(enters_ahead(&contract, 20.0, rush, 3.0), 11.575);
+        near(walks_clear(&contract, 10.0, 2.0, 3.0), 3.95);
+        reaches(dawdle(&contract, 10.0, 0.5), 4.0, 6.0);
+        near(earliest_rest(&contract, 8.0), 4.0);
+        near(arrival(&contract, 10.0, 5.0), 1.406_51);
+        let from = Reach {
+            distance: 1.0,
+            speed: 4.0,
+        };
+        near(super::rest(&contract, from, 2.0), 1.0 + 14.0 + 100.0 / 6.0);
+    }
+
+    #[test]
+    fn a_safe_gap_is_what_a_follower_needs_to_stop_behind_the_ego() {
+        near(safe_gap(&WORST, 10.0, 4.0), 5.375 + 132.25 / 8.0 - 2.0);
+        assert_eq!(safe_gap(&WORST, 1.0, 14.0), 0.0);
+        // An ego that brakes harder than its follower, and perhaps harder than it says.
+        near(
+            safe_gap(&INEXACT, 10.0, 4.0),
+            5.5 + 144.0 / 8.0 - 16.0 / 13.5,
+        );
+    }
+}

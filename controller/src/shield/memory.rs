@@ -187,3 +187,114 @@ fn both(contract: &Contract, expected: Bounds, seen: Bounds) -> (Bounds, [Room; 
     let (speed, pace) = common(expected.speed, seen.speed);
     (Bounds { s, speed }, [place, pace])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bounds(s: [f32; 2], speed: [f32; 2]) -> Bounds {
+        let span = |[from, to]: [f32; 2]| Span { from, to };
+        Bounds {
+            s: span(s),
+            speed: span(speed),
+        }
+    }
+
+    fn near(room: Room, left: f32, most: f32) {
+        let share = left / most;
+        let near = (room.left - left).abs() < 1e-5 && (room.share - share).abs() < 1e-4;
+        assert!(near, "{room:?}, {left} of {most}");
+    }
+
+    #[test]
+    fn two_bounds_have_in_common_what_is_in_both_and_may_miss_each_other_by_the_slack() {
+        let contract = Contract::builder().slack(0.05).build().unwrap();
+        let common = |a, b| both(&contract, a, b);
+        let seen = bounds([2.0, 5.0], [4.0, 6.0]);
+        let (found, [place, pace]) = common(bounds([1.0, 3.0], [4.5, 5.0]), seen);
+        assert_eq!(found, bounds([2.0, 3.0], [4.5, 5.0]));
+        near(place, 1.05, 2.05);
+        near(pace, 0.55, 0.55);
+        // Apart by 4 cm, and by 6.
+        let (found, [place, pace]) = common(bounds([5.04, 9.0], [3.0, 3.94]), seen);
+        assert_eq!(found, bounds([5.0, 5.04], [3.94, 4.0]));
+        near(place, 0.01, 3.05);
+        near(pace, -0.01, 0.99);
+        assert!(place.holds() && !pace.holds());
+    }
+
+    #[test]
+    fn a_plan_is_followed_if_its_calls_come_in_time() {
+        let on_time = |jitter: f32, micros: &[u64]| {
+            let contract = Contract::builder().jitter(jitter).build().unwrap();
+            let mut memory = Memory::new();
+            memory.verified(Plan { go: 5 }, Instant::from_micros(1000));
+            let calls = micros.iter().map(|&at| Instant::from_micros(1000 + at));
+            calls.map(|now| memory.call(&contract, now)).last().unwrap()
+        };
+        assert!(on_time(0.0, &[100_002]) && on_time(0.0, &[99_998]));
+        assert!(!on_time(0.0, &[100_003]) && !on_time(0.0, &[99_997]));
+        assert!(on_time(0.0, &[100_000, 200_003]) && !on_time(0.0, &[100_000, 200_004]));
+        assert!(on_time(0.01, &[120_002]) && !on_time(0.01, &[120_003]));
+        assert!(Memory::new().call(&Contract::WORST_CASE, Instant::from_micros(5)));
+    }
+
+    #[test]
+    fn a_plan_that_is_confirmed_is_in_time_from_then_on_and_one_that_is_void_is_none() {
+        let contract = Contract::WORST_CASE;
+        let at = Instant::from_millis;
+        let mut memory = Memory::new();
+        memory.verified(Plan { go: 5 }, at(0));
+        memory.confirmed(at(30));
+        memory.shorten(Plan::tail);
+        assert_eq!(memory.plan(), Some(Plan { go: 4 }));
+        assert!(memory.call(&contract, at(130)));
+        memory.confirmed(at(130));
+        assert!(memory.call(&contract, at(230)));
+        memory.void();
+        assert_eq!(memory.plan(), None);
+    }
+
+    /// By what was commanded; by anything, if a call was missed.
+    #[test]
+    fn the_ego_is_expected_where_its_commands_lead() {
+        let contract = Contract::builder()
+            .position_error(0.5)
+            .speed_error(0.2)
+            .build()
+            .unwrap();
+        let at = Instant::from_millis;
+        let mut memory = Memory::new();
+        let ego = Vehicle {
+            s: 10.0,
+            speed: 8.0,
+            pose: crate::geometry::Pose {
+                position: crate::geometry::Point::origin(),
+                direction: crate::geometry::unit(1.0, 0.0),
+            },
+        };
+        assert_eq!(memory.least_speed(&contract, at(0)), 0.0);
+        for millis in [0, 100, 200, 300] {
+            memory.call(&contract, at(millis));
+            memory.command(&contract, 1.0, at(millis));
+        }
+        memory.note(&contract, &ego, at(300));
+        memory.call(&contract, at(400));
+        let close = |a: Bounds, b: Bounds| {
+            let near = |a: f32, b: f32| (a - b).abs() < 1e-4;
+            let spans = [(a.s, b.s), (a.speed, b.speed)];
+            let same = spans
+                .iter()
+                .all(|(a, b)| near(a.from, b.from) && near(a.to, b.to));
+            assert!(same, "{a:?}, {b:?}");
+        };
+        let expected = memory.expected(&contract, at(400)).unwrap();
+        close(expected, bounds([9.5 + 0.785, 10.5 + 0.825], [7.9, 8.3]));
+        assert!((memory.least_speed(&contract, at(400)) - 7.9).abs() < 1e-4);
+        memory.call(&contract, at(500));
+        let expected = memory.expected(&contract, at(500)).unwrap();
+        close(expected, bounds([9.5 + 1.5, 10.5 + 1.7], [7.2, 8.8]));
+        memory.forget_ego();
+        assert_eq!(memory.expected(&contract, at(500)), None);
+    }
+}

@@ -36,3 +36,30 @@ impl Own {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Point, Pose, unit};
+
+    #[test]
+    fn what_the_ego_has_passed_it_has_passed_unless_that_cannot_be() {
+        let contract = Contract::builder().position_error(0.5).build().unwrap();
+        let pose = Pose {
+            position: Point::origin(),
+            direction: unit(1.0, 0.0),
+        };
+        let vehicle = Vehicle {
+            s: 10.0,
+            speed: 3.0,
+            pose,
+        };
+        let own = |least| Own::new(&contract, &vehicle, least);
+        assert_eq!(
+            [9.0, 9.7, 10.5, 10.6].map(|least| own(least).least),
+            [9.5, 9.7, 10.5, 9.5]
+        );
+        let span = own(9.7).span(&contract);
+        assert_eq!((span.from, span.to), (9.7, 10.5));
+    }
+}

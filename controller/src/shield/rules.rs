@@ -117,3 +117,18 @@ pub trait Rules {
 pub struct Sound;
 
 impl Rules for Sound {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turn_ends_where_the_next_one_is_due() {
+        let ends = |perhaps, surely| Sound::ends(perhaps, surely, 30, 15);
+        assert!(ends(30, 30), "it begins");
+        assert!(!ends(45, 30) && ends(45, 29), "or they moved since");
+        assert!(!ends(44, 29) && !ends(31, 31));
+        assert!(ends(u16::MAX, 30), "or nothing is known");
+        assert!(!Sound::ends(30, 30, 30, 0));
+    }
+}

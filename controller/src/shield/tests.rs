@@ -13,6 +13,7 @@ use proptest::prelude::*;
 use std::string::ToString;
 
 mod actuation;
+mod distances;
 mod door;
 mod edges;
 mod headroom;
@@ -20,6 +21,7 @@ mod hidden;
 mod memory;
 mod turns;
 mod walkers;
+mod without_room;
 
 const WORST: Contract = Contract::WORST_CASE;
 

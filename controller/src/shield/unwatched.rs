@@ -208,3 +208,90 @@ pub(super) fn unplaced(way: Way<'_>, path: PathId, class: Class, ego: f32) -> Op
             .reduce(Real::min),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PATH: PathId = PathId::new(1);
+
+    #[test]
+    fn the_sooner_of_two_closed_zones_counts_and_of_equals_the_first() {
+        let closed = |number, from| Closed { number, from };
+        let first = Some(closed(1, 5.0));
+        assert_eq!(sooner(None, closed(2, 9.0)), Some(closed(2, 9.0)));
+        assert_eq!(sooner(first, closed(2, 5.0)), first);
+        assert_eq!(sooner(first, closed(2, 4.9)), Some(closed(2, 4.9)));
+    }
+
+    #[test]
+    fn what_is_taken_out_leaves_the_others() {
+        let mut all: Vec<u8, 4> = Vec::from_slice(&[1, 2, 3, 4]).unwrap();
+        assert_eq!(take(&mut all, 1), Some(2));
+        assert_eq!(all, [1, 4, 3]);
+        assert_eq!(take(&mut all, 2), Some(3));
+        assert_eq!(take(&mut Vec::<u8, 4>::new(), 0), None);
+    }
+
+    #[test]
+    fn of_those_who_are_seen_twice_the_nearer_counts_and_of_those_seen_again_the_last() {
+        let mut unwatched = Unwatched::new();
+        let mut from = |from, begin: bool| {
+            if begin {
+                unwatched.begin();
+            }
+            unwatched.close(7, PATH, Place::OnFoot, from);
+            assert_eq!(unwatched.entries.len(), 1);
+            unwatched.placed(7, PATH).unwrap().from
+        };
+        assert_eq!(
+            [from(9.0, false), from(12.0, false), from(5.0, false)],
+            [9.0, 9.0, 5.0]
+        );
+        assert_eq!(from(11.0, true), 11.0);
+    }
+
+    #[test]
+    fn one_of_unknown_place_is_another_entry() {
+        let mut unwatched = Unwatched::new();
+        unwatched.close(7, PATH, Place::Unknown, 9.0);
+        assert!(unwatched.placed(7, PATH).is_none());
+        unwatched.close(7, PATH, Place::OnFoot, 8.0);
+        unwatched.close(8, PATH, Place::OnFoot, 7.0);
+        unwatched.close(7, PathId::new(2), Place::OnFoot, 6.0);
+        assert_eq!(unwatched.entries.len(), 4);
+        assert_eq!(unwatched.placed(7, PATH).unwrap().from, 8.0);
+        // Who is watched now is not, and the one of unknown place stays while it is seen.
+        unwatched.placed(7, PATH).unwrap().holds = true;
+        assert!(unwatched.open(7, PATH) && !unwatched.open(8, PATH));
+        assert_eq!(unwatched.entries.len(), 2);
+        unwatched.begin();
+        assert!(!unwatched.open(7, PATH));
+        assert_eq!(unwatched.entries.len(), 1);
+    }
+
+    #[test]
+    fn who_has_left_makes_room_and_beyond_the_room_the_nearest_counts() {
+        let mut unwatched = Unwatched::new();
+        let mut close = |number, from| {
+            unwatched.close(number, PATH, Place::OnFoot, from);
+            (
+                unwatched.entries.len(),
+                unwatched.beyond().map(|it| (it.number, it.from)),
+            )
+        };
+        for number in 0..15 {
+            close(number, 50.0);
+        }
+        assert_eq!(close(20, FAR), (16, None));
+        assert_eq!(close(21, FAR), (16, None));
+        assert_eq!(close(22, 40.0), (16, None));
+        assert_eq!(close(23, 30.0), (16, Some((23, 30.0))));
+        assert_eq!(close(24, 35.0), (16, Some((23, 30.0))));
+        assert_eq!(close(25, 20.0), (16, Some((25, 20.0))));
+        assert_eq!(close(26, FAR), (16, Some((25, 20.0))));
+        assert!(unwatched.placed(20, PATH).is_none() && unwatched.placed(22, PATH).is_some());
+        unwatched.begin();
+        assert_eq!(unwatched.beyond(), None);
+    }
+}

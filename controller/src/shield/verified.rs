@@ -114,3 +114,107 @@ pub(crate) fn passage_margin<R: Rules>(
         Passage::Never => -FAR,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shield::hazard::Who;
+    use crate::shield::hazards::tests::just;
+    use crate::shield::reach::Reach;
+    use crate::shield::rules::Sound;
+
+    const WORST: Contract = Contract::WORST_CASE;
+
+    const DEPARTURE: Departure<f32> = {
+        const fn reach(distance: f32, speed: f32) -> Reach<f32> {
+            Reach { distance, speed }
+        }
+        Departure {
+            braking: reach(1.0, 6.0),
+            most: reach(1.5, 6.5),
+            least: reach(1.0, 5.5),
+        }
+    };
+
+    fn hazard(target: f32, limit: f32, passage: Passage) -> Hazard {
+        Hazard {
+            who: Who::Unwatched(0),
+            zone: 0,
+            suspect: false,
+            yields: false,
+            target,
+            limit,
+            rest: limit,
+            rest_beyond: FAR,
+            passage,
+        }
+    }
+
+    const FREE: Passage = Passage::Before {
+        distance: 100.0,
+        speed: 5.0,
+    };
+
+    fn best_of(all: &[Hazard]) -> Verified {
+        best::<Sound>(&WORST, &just(all), &DEPARTURE)
+    }
+
+    #[track_caller]
+    fn near(a: f32, b: f32) {
+        assert!((a - b).abs() < 1e-2, "{a}, {b}");
+    }
+
+    /// Braking at once ends after 1 m + 6 m; going on for 2.3 s after 54.31 m.
+    #[test]
+    fn the_best_plan_stops_before_a_zone_or_passes_it_in_time() {
+        let stops = best_of(&[hazard(FAR, 10.0, Passage::Never)]);
+        assert_eq!((stops.plan.go, stops.passes), (0, -2.0 * FAR));
+        near(stops.margin, 2.99);
+        // The other comes 20.28 m nearer in 2.37 s.
+        let passes = best_of(&[hazard(20.0, 5.0, FREE)]);
+        assert_eq!((passes.plan.go, passes.passes), (23, 20.0));
+        near(passes.margin, 79.71);
+        // A wall beyond.
+        let before = best_of(&[hazard(20.0, 5.0, FREE), hazard(FAR, 60.0, Passage::Never)]);
+        assert_eq!(before.plan.go, 23);
+        near(before.margin, 5.678);
+        let neither = best_of(&[hazard(20.0, 5.0, FREE), hazard(FAR, 50.0, Passage::Never)]);
+        assert_eq!(neither.plan.go, 0);
+        near(neither.margin, -2.01);
+        // Not within a minute.
+        assert_eq!(best_of(&[hazard(1000.0, 5.0, FREE)]).plan.go, 0);
+        assert_eq!(best_of(&[]).plan.go, 0);
+    }
+
+    #[test]
+    fn a_plan_has_to_spare_what_it_stops_short_by_or_passes_by() {
+        let spare = |go, target| {
+            let hazard = hazard(target, 5.0, FREE);
+            spare::<Sound>(&WORST, &hazard, &DEPARTURE, Plan { go })
+        };
+        near(spare(23, 20.0), 79.71);
+        near(spare(22, 20.0), -46.67);
+        near(spare(0, 20.0), -2.01);
+        assert!(spare(650, 1000.0) < 0.0, "farther than a plan goes");
+    }
+
+    #[test]
+    fn a_passage_has_to_spare_what_the_other_has_not_come() {
+        let margin =
+            |passage| passage_margin::<Sound>(&WORST, &hazard(0.0, 0.0, passage), 2.0, 4.0);
+        // In 2 s it comes 16 m nearer and gets 11 m/s, from which it needs 5.875 + 12.5²/8 − 2 m.
+        let ahead = |gap, arrives| Passage::Ahead {
+            gap,
+            speed: 5.0,
+            arrives,
+        };
+        near(margin(ahead(50.0, FAR)), 34.0 - 23.406 - 0.01);
+        near(margin(ahead(50.0, 20.0)), 4.0 - 0.01);
+        let walks = Passage::Walks {
+            distance: 9.0,
+            speed: 3.0,
+        };
+        near(margin(walks), 2.99);
+        assert_eq!(margin(Passage::Never), -FAR);
+    }
+}

@@ -263,3 +263,174 @@ impl Presence {
             .is_some_and(|arrived| arrived.saturating_add(rested.saturating_mul(period)) > period)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn contract(change: impl FnOnce(&mut Contract)) -> Contract {
+        let mut contract = Contract::ALL_WAY_STOP;
+        change(&mut contract);
+        contract
+    }
+
+    #[test]
+    fn rest_is_sure_up_to_one_error_and_possible_up_to_three_and_a_dip() {
+        let errs = contract(|c| c.speed_error = 0.1);
+        let of = |speed| RestState::of(&errs, speed);
+        assert_eq!([0.0, 0.174].map(of), [RestState::Surely; 2]);
+        assert_eq!([0.176, 0.593].map(of), [RestState::Perhaps; 2]);
+        assert_eq!(of(0.594), RestState::No);
+        let near = |a: f32, b: f32| assert!((a - b).abs() < 1e-5, "{a}, {b}");
+        near(dip(&errs), 0.1 * 24.0 / 11.0);
+        near(dip(&contract(|c| c.jitter = 0.01)), 0.12 * 24.0 / 11.0);
+    }
+
+    #[test]
+    fn one_that_moves_was_seen_to_by_everybody_after_two_calls_or_three_with_jitter() {
+        assert_eq!(calls_in_between(&Contract::ALL_WAY_STOP), 2);
+        assert_eq!(calls_in_between(&contract(|c| c.jitter = 0.01)), 3);
+    }
+
+    #[test]
+    fn a_turn_begins_when_no_plan_of_the_last_one_can_go_unseen() {
+        let after = |change: fn(&mut Contract)| grace(&contract(change));
+        assert_eq!(after(|_| {}), 4);
+        // 1.075 m/s are gained in 3.6 periods; with jitter one period more; a response of 2.5 periods is over in the third.
+        assert_eq!(after(|c| c.speed_error = 0.5), 7);
+        assert_eq!(after(|c| c.jitter = 0.01), 4 + 1 + 1);
+        assert_eq!(after(|c| c.latency = 0.25), 6);
+        assert_eq!(after(|c| c.latency = 0.0), 4);
+        // Half of `go` is nobody's: twice as many.
+        assert_eq!(after(|c| (c.speed_error, c.ego.gain) = (0.5, 0.5)), 4 + 7);
+        // It lets its brakes go for 0.2 s · 3 / √2 / 3 m/s², after a response of 0.3 s.
+        assert_eq!(after(|c| c.ego.lag = 0.2), 4 + 4);
+    }
+
+    const NOW: Instant = Instant::from_millis(1000);
+
+    fn span(from: f32, to: f32) -> Span {
+        Span { from, to }
+    }
+
+    #[test]
+    fn one_arrives_between_two_moments() {
+        let jitter = contract(|c| c.jitter = 0.01);
+        let mut arrival = Arrival::default();
+        let mut note = |from, to, now| {
+            let rule = Precedence::ALL_WAY_STOP;
+            (
+                arrival.note(&jitter, rule, 50.0, span(from, to), now),
+                arrival,
+            )
+        };
+        let after = Some(Instant::from_millis(990));
+        let by = Some(Instant::from_millis(1210));
+        let at = |after, by| Arrival { after, by };
+        assert_eq!(note(36.0, 37.9, NOW), (Arrived::Not, at(after, None)));
+        assert_eq!(
+            note(37.0, 38.0, NOW.plus(100_000)),
+            (Arrived::Perhaps, at(after, None))
+        );
+        assert_eq!(
+            note(38.0, 40.0, NOW.plus(200_000)),
+            (Arrived::Surely, at(after, by))
+        );
+        assert_eq!(
+            note(30.0, 31.0, NOW.plus(300_000)),
+            (Arrived::Surely, at(after, by))
+        );
+    }
+
+    #[test]
+    fn who_goes_first_has_arrived_before_by_more_than_a_tie_or_has_the_right_of_way() {
+        let between = |after: u64, by: u64| Arrival {
+            after: Some(Instant::from_micros(after)),
+            by: Some(Instant::from_micros(by)),
+        };
+        let first = between(50, 100);
+        let goes = |other, right| first.goes_first(other, 10, right);
+        assert!(goes(between(110, 120), false) && !goes(between(109, 120), false));
+        assert!(goes(between(90, 120), true) && !goes(between(89, 120), true));
+        let unseen = Arrival::default();
+        assert!(!goes(unseen, true) && !goes(unseen, false) && !unseen.goes_first(first, 10, true));
+        assert_eq!(first.earlier(between(130, 140)), Some(30));
+        assert_eq!(first.earlier(between(70, 140)), Some(-30));
+        assert_eq!(first.earlier(unseen), None);
+    }
+
+    #[test]
+    fn rest_is_counted_since_arrival_and_ends_when_everybody_saw_a_move() {
+        let mut rests = Standstill::default();
+        let mut note = |rest, arrived| {
+            rests.note(rest, arrived, 2);
+            (rests.perhaps, rests.surely)
+        };
+        use {Arrived::*, RestState as Rest};
+        assert_eq!(note(Rest::Surely, Arrived::Surely), (u16::MAX, 1));
+        assert_eq!(note(Rest::Surely, Not), (0, 0));
+        assert_eq!(note(Rest::Surely, Arrived::Perhaps), (1, 0));
+        assert_eq!(note(Rest::Surely, Arrived::Surely), (2, 1));
+        assert_eq!(note(Rest::Perhaps, Arrived::Surely), (3, 0));
+        assert_eq!(note(Rest::Surely, Arrived::Surely), (4, 1));
+        assert_eq!(note(Rest::No, Arrived::Surely), (5, 0));
+        assert_eq!(note(Rest::No, Arrived::Surely), (0, 0));
+        assert_eq!(note(Rest::No, Arrived::Surely), (0, 0));
+        assert_eq!(note(Rest::Perhaps, Arrived::Surely), (1, 0));
+    }
+
+    #[test]
+    fn a_second_look_within_a_period_takes_away_what_was_sure() {
+        let rested = |rest| {
+            let mut presence = Presence::default();
+            presence.standstill.surely = 7;
+            presence.note_again(rest);
+            presence.rested()
+        };
+        assert_eq!(rested(RestState::Surely), [u16::MAX, 7]);
+        assert_eq!(rested(RestState::Perhaps), [u16::MAX, 0]);
+    }
+
+    #[test]
+    fn one_that_is_not_seen_has_arrived_if_it_had_before() {
+        let unseen = Sighting {
+            s: None,
+            rest: RestState::Surely,
+        };
+        let noted = |mut presence: Presence| {
+            presence.note(
+                &Contract::ALL_WAY_STOP,
+                Precedence::ALL_WAY_STOP,
+                50.0,
+                unseen,
+                NOW,
+            );
+            presence.rested()
+        };
+        assert_eq!(noted(Presence::default()), [u16::MAX, 0]);
+        let mut there = Presence::default();
+        there.arrival.by = Some(NOW);
+        assert_eq!(noted(there), [u16::MAX, 1]);
+    }
+
+    /// By what it arrived earlier and what it has rested longer, both together more than a period.
+    #[test]
+    fn who_came_first_has_arrived_and_rested_a_period_before() {
+        let presence = |after: u64, by: u64, perhaps, surely| Presence {
+            arrival: Arrival {
+                after: Some(Instant::from_micros(after)),
+                by: Some(Instant::from_micros(by)),
+            },
+            standstill: Standstill {
+                perhaps,
+                surely,
+                moved: 0,
+            },
+        };
+        let other = presence(1000, 1100, 3, 2);
+        let first = |by, surely| presence(0, by, 9, surely).first(other, 100);
+        assert!(first(899, 3) && !first(900, 3));
+        assert!(first(1099, 5) && !first(1100, 5));
+        assert!(first(699, 1) && !first(700, 1));
+    }
+}

@@ -205,3 +205,146 @@ impl Walkers {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One who was at 10 m, to within 0.3 m, a second ago, and walks at 2 m/s at most.
+    fn walker() -> Walker {
+        Walker {
+            number: 3,
+            path: PathId::new(1),
+            pace: 2.0,
+            base: Span {
+                from: 9.7,
+                to: 10.3,
+            },
+            at: Instant::from_millis(1000),
+            seen: false,
+            suspect: false,
+        }
+    }
+
+    #[track_caller]
+    fn near(a: f32, b: f32) {
+        assert!((a - b).abs() < 1e-4, "{a}, {b}");
+    }
+
+    #[test]
+    fn one_on_foot_may_have_gone_either_way() {
+        let span = walker().span(Instant::from_millis(1500));
+        near(span.from, 8.7);
+        near(span.to, 11.3);
+        let mut walkers = Walkers::new();
+        walkers.known.push(walker()).unwrap();
+        walkers.advance(Instant::from_millis(1500));
+        walkers.rebase();
+        assert_eq!(walkers.known[0].base, span);
+        assert_eq!(walkers.known[0].at, Instant::from_millis(1500));
+        walkers.forget(4);
+        assert_eq!(walkers.known.len(), 1);
+        walkers.forget(3);
+        assert!(walkers.known.is_empty());
+    }
+
+    #[test]
+    fn one_on_foot_is_suspect_beyond_its_pace_errors_and_slack() {
+        let contract = Contract::builder()
+            .position_error(0.3)
+            .speed_error(0.2)
+            .slack(0.05);
+        let contract = contract.build().unwrap();
+        let now = Instant::from_millis(1500);
+        for (s, speed, suspect) in [
+            (11.6, 0.0, false),
+            (11.7, 0.0, true),
+            (8.4, 0.0, false),
+            (8.3, 0.0, true),
+            (10.0, 2.2, false),
+            (10.0, 2.3, true),
+            (10.0, -2.2, false),
+            (10.0, -2.3, true),
+        ] {
+            let mut walker = walker();
+            let [place, pace] = walker.meet(&contract, (s, speed), now);
+            assert_eq!(
+                (walker.suspect, walker.seen),
+                (suspect, true),
+                "{s} m, {speed} m/s"
+            );
+            near(place.left, 1.65 - (s - 10.0).abs());
+            near(pace.left, 2.25 - speed.abs());
+            near(walker.base.from, s - 0.3);
+            near(walker.base.to, s + 0.3);
+            assert_eq!(walker.at, now);
+        }
+    }
+
+    #[test]
+    fn a_crossing_is_a_hazard_as_far_as_the_nearer_of_its_sides() {
+        use crate::geometry::{Footprint, Point};
+        use crate::junction::{Junction, Route};
+        let route = |from: (f32, f32), to: (f32, f32)| {
+            Route::<2>::new([from, to].map(|(x, y)| Point::new(x, y))).unwrap()
+        };
+        let mut builder = Junction::<2, 4, 1>::builder();
+        let car = route((-50.0, 0.0), (50.0, 0.0));
+        builder.path(&car, Class::Car, Footprint::PAPER).unwrap();
+        let small = Footprint {
+            length: 0.6,
+            width: 0.6,
+        };
+        builder
+            .path(&route((0.0, -20.0), (0.0, 20.0)), Class::Pedestrian, small)
+            .unwrap();
+        let junction = builder.build().unwrap();
+        let way = junction.way(PathId::new(0)).unwrap();
+        let zone = *way
+            .conflict(PathId::new(1))
+            .unwrap()
+            .zones()
+            .next()
+            .unwrap();
+        let contract = Contract::builder().position_error(0.3).build().unwrap();
+        let own = Own {
+            s: 20.0,
+            speed: 5.0,
+            least: 19.7,
+        };
+        for (at, distance) in [(10.0, zone.other.from - 11.3), (30.0, 28.7 - zone.other.to)] {
+            let mut walkers = Walkers::new();
+            let base = Span {
+                from: at - 0.3,
+                to: at + 0.3,
+            };
+            walkers.known.push(Walker { base, ..walker() }).unwrap();
+            walkers.advance(Instant::from_millis(1500));
+            let hazards: std::vec::Vec<_> = walkers.hazards(&contract, way, &own).collect();
+            let [hazard] = hazards[..] else {
+                panic!("{hazards:?}");
+            };
+            let place = u8::MAX;
+            assert_eq!(hazard.who, Who::Watched { number: 3, place });
+            assert!(hazard.yields && !hazard.suspect);
+            near(hazard.target, zone.ego.to - 20.0 + 0.9);
+            near(hazard.limit, zone.ego.from - 20.3);
+            near(hazard.rest, zone.ego.from - 20.3);
+            let Passage::Walks {
+                distance: is,
+                speed,
+            } = hazard.passage
+            else {
+                panic!("{hazard:?}");
+            };
+            near(is, distance);
+            assert_eq!(speed, 2.0);
+            let past = Own {
+                s: 80.0,
+                speed: 5.0,
+                least: 79.7,
+            };
+            assert_eq!(walkers.hazards(&contract, way, &past).count(), 0);
+        }
+    }
+}

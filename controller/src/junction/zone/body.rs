@@ -347,4 +347,158 @@ mod tests {
             prop_assert!(at.iter().chain([&before, &after]).any(covers));
         }
     }
+
+    fn corner(degrees: f32) -> Route<4> {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let points = [(-20.0, 0.0), (0.0, 0.0), (10.0 * cos, 10.0 * sin)];
+        Route::new(points.map(|(x, y)| Point::new(x, y))).unwrap()
+    }
+
+    #[track_caller]
+    fn near(a: f32, b: f32) {
+        assert!((a - b).abs() < 1e-3, "{a}, {b}");
+    }
+
+    const CAR: Footprint = Footprint {
+        length: 4.0,
+        width: 3.0,
+    };
+
+    #[test]
+    fn a_footprint_is_inflated_on_every_side() {
+        let route = corner(0.0);
+        let body = Body::new(route.polyline(), CAR, 0.1);
+        near(body.footprint().length, 4.24);
+        near(body.footprint().width, 3.24);
+        near(body.half(0.05).0, 2.17);
+        near(body.half(0.05).1, 1.67);
+        // Half a diagonal of 5 m turns by half a step of 5°, or a small one by less than what is not looked at.
+        near(body.reach(), 1.001 * 2.5 + 1.5 * (0.12 + 0.109_125));
+        let small = Footprint {
+            length: 0.4,
+            width: 0.3,
+        };
+        near(
+            Body::new(route.polyline(), small, 0.1).reach(),
+            1.001 * 0.25 + 1.5 * (0.12 + 0.03),
+        );
+    }
+
+    #[test]
+    fn a_piece_is_a_motion_between_two_points() {
+        let route = corner(60.0);
+        let body = Body::new(route.polyline(), CAR, 0.0);
+        let [before, after] = [0, 1].map(|i| body.stage(i).unwrap());
+        assert!(body.stage(2).is_none());
+        let (one, two) = (before.straight(), after.straight());
+        assert_eq!(
+            (one.first, one.last, two.first, two.last),
+            (true, false, false, true)
+        );
+        assert_eq!((one.arc, one.length, two.arc), (0.0, 20.0, 20.0));
+        near(two.length, 10.0);
+        near(two.direction.x, 0.5);
+        near(two.velocity.y, 60.0_f32.to_radians().sin());
+        near(one.half.0, 2.02);
+        // Six tenths of a length before and after the corner.
+        let turns: [std::vec::Vec<Motion>; 2] =
+            [&before, &after].map(|stage| stage.turns().collect());
+        for (turns, arc, x) in [(&turns[0], 17.6, -2.4), (&turns[1], 20.0, 0.0)] {
+            assert!(
+                turns
+                    .iter()
+                    .all(|turn| turn.turning && !turn.first && !turn.last)
+            );
+            for turn in turns {
+                near(turn.arc, arc);
+                near(turn.length, 2.4);
+                near(turn.start.x, x);
+                near(length(&turn.direction), 1.0);
+            }
+        }
+        // 30° in steps of 5° at most, from the piece's direction to half-way.
+        for (turns, from) in [(&turns[0], 0.0), (&turns[1], 30.0)] {
+            let headings = turns
+                .iter()
+                .map(|turn| turn.direction.y.atan2(turn.direction.x).to_degrees());
+            let headings: std::vec::Vec<f32> = headings.collect();
+            assert!((6..=8).contains(&headings.len()), "{headings:?}");
+            let step = 30.0 / headings.len() as f32;
+            for (i, heading) in headings.iter().enumerate() {
+                let middle = from + step * (i as f32 + 0.5);
+                assert!((heading - middle).abs() < 0.3, "{headings:?}");
+            }
+            // It is inflated for half a step.
+            for turn in turns {
+                let sweep = turn.half.0 - 2.02;
+                let least = 2.5 * (0.5 * step).to_radians();
+                assert!(
+                    (0.999 * least..1.06 * least).contains(&sweep),
+                    "{sweep}, {least}"
+                );
+                near(turn.half.1 - 1.52, sweep);
+            }
+        }
+        // The largest of all.
+        near(before.size(), turns[0][0].half.0 + turns[0][0].half.1);
+    }
+
+    #[test]
+    fn a_short_piece_is_turned_on_all_along() {
+        let points = [(0.0, 0.0), (1.0, 0.0), (1.0, 9.0)].map(|(x, y)| Point::new(x, y));
+        let route = Route::<3>::new(points).unwrap();
+        let stage = Body::new(route.polyline(), CAR, 0.0).stage(0).unwrap();
+        for turn in stage.turns() {
+            assert_eq!((turn.arc, turn.length), (0.0, 1.0));
+        }
+        assert!(stage.turns().count() > 5);
+    }
+
+    #[test]
+    fn a_small_bend_inflates_the_pieces_beside_it_and_is_no_turn() {
+        // Corners, 2.5 m from the middle, move by 2.5 m · 0.5 · 1°.
+        let route = corner(1.0);
+        let body = Body::new(route.polyline(), CAR, 0.0);
+        for i in [0, 1] {
+            let stage = body.stage(i).unwrap();
+            near(stage.straight().half.0, 2.02 + 0.021_816);
+            assert_eq!(stage.turns().count(), 0);
+            assert!(!stage.turns_near(&stage));
+        }
+    }
+
+    #[test]
+    fn turns_are_near_what_their_footprints_may_touch() {
+        let route = corner(60.0);
+        let stage = Body::new(route.polyline(), CAR, 0.0).stage(0).unwrap();
+        let apart = |x: f32| {
+            let points = [(x, 0.0), (x, 10.0)].map(|(x, y)| Point::new(x, y));
+            let other = Route::<2>::new(points).unwrap();
+            stage.turns_near(&Body::new(other.polyline(), CAR, 0.0).stage(0).unwrap())
+        };
+        let reach = 20.0 + 10.0 + stage.size() + 2.02 + 1.52;
+        assert!(apart(reach - 20.1) && !apart(reach - 19.9));
+    }
+
+    #[test]
+    fn half_way_between_two_directions_is_their_middle() {
+        let at = |degrees: f32| {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            Vector::new(cos, sin)
+        };
+        let is = |a: Vector, b: Vector| assert!(length(&(a - b)) < 1e-4, "{a}, {b}");
+        is(middle(at(10.0), at(70.0)), at(40.0));
+        is(middle(at(10.0), at(190.0)), at(100.0));
+    }
+
+    #[test]
+    fn a_kink_of_more_than_a_right_angle_is_found_with_its_angle() {
+        let kink = |degrees: f32| sharp_kink(corner(degrees).polyline());
+        assert!(kink(89.9).is_none() && kink(90.0).is_none() && kink(-89.9).is_none());
+        for degrees in [100.0, -100.0] {
+            let (at, angle) = kink(degrees).unwrap();
+            assert_eq!(at, 1);
+            assert!((angle - 100.0).abs() < 0.01);
+        }
+    }
 }

@@ -174,3 +174,205 @@ fn placed(interval: Span, motion: &Motion) -> Span {
         },
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A vehicle of 5 m × 2 m from `start` on, in direction `degrees`.
+    fn motion(start: (f32, f32), degrees: f32, length: f32) -> Motion {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let direction = Vector::new(cos, sin);
+        Motion {
+            start: Point::new(start.0, start.1),
+            velocity: direction,
+            direction,
+            arc: 100.0,
+            length,
+            turning: false,
+            first: false,
+            last: false,
+            half: (2.5, 1.0),
+        }
+    }
+
+    #[track_caller]
+    fn is(span: Span, from: f32, to: f32) {
+        let near = (span.from - from).abs() < 1e-3 && (span.to - to).abs() < 1e-3;
+        assert!(near, "{span:?}, not {from} to {to}");
+    }
+
+    #[test]
+    fn a_limit_is_linear_in_both_arc_lengths() {
+        let limit = |along, other_along| Limit {
+            radius: 3.0,
+            offset: 10.0,
+            along,
+            other_along,
+        };
+        assert_eq!(limit(2.0, -0.5).at(Point::new(3.0, 8.0)), 12.0);
+        is(limit(2.0, -0.5).range(3.0, 8.0), 6.0, 16.0);
+        is(limit(-2.0, 0.5).range(3.0, 8.0), 4.0, 14.0);
+        is(limit(2.0, 0.5).range(3.0, 8.0), 10.0, 20.0);
+        is(limit(-2.0, -0.5).range(3.0, 8.0), 0.0, 10.0);
+    }
+
+    #[test]
+    fn rectangles_are_apart_along_a_side_by_what_both_reach() {
+        let (a, b) = (
+            motion((0.0, 0.0), 0.0, 9.0),
+            Motion {
+                half: (4.0, 1.5),
+                ..motion((0.0, 0.0), 30.0, 9.0)
+            },
+        );
+        let (sin, cos) = 30.0_f32.to_radians().sin_cos();
+        let expected = [
+            ((0.0, 1.0), 1.0 + 4.0 * sin + 1.5 * cos),
+            ((-sin, cos), 1.5 + 2.5 * sin + cos),
+            ((1.0, 0.0), 2.5 + 4.0 * cos + 1.5 * sin),
+            ((cos, sin), 4.0 + 2.5 * cos + sin),
+        ];
+        for ((axis, radius), ((x, y), expected)) in axes(&a, &b).into_iter().zip(expected) {
+            let away = crate::geometry::length(&(axis - Vector::new(x, y)));
+            assert!(away < 1e-5 && (radius - expected).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn a_cut_leaves_what_is_on_one_side() {
+        let cut = |along, other_along, offset, side| {
+            let mut polygon = rectangle(4.0, 2.0);
+            let limit = Limit {
+                radius: 1.0,
+                offset,
+                along,
+                other_along,
+            };
+            cut(&mut polygon, &limit, side);
+            polygon
+                .iter()
+                .map(|p| (p.x, p.y))
+                .collect::<std::vec::Vec<_>>()
+        };
+        // x ≤ 3, x ≥ 1, y ≤ 1, and x + y ≤ 1: in order, from the corner that is kept first.
+        assert_eq!(
+            cut(1.0, 0.0, -2.0, 1.0),
+            [(0.0, 0.0), (3.0, 0.0), (3.0, 2.0), (0.0, 2.0)]
+        );
+        assert_eq!(
+            cut(1.0, 0.0, -2.0, -1.0),
+            [(1.0, 0.0), (4.0, 0.0), (4.0, 2.0), (1.0, 2.0)]
+        );
+        assert_eq!(
+            cut(0.0, 2.0, -1.0, 1.0),
+            [(0.0, 0.0), (4.0, 0.0), (4.0, 1.0), (0.0, 1.0)]
+        );
+        assert_eq!(
+            cut(1.0, 1.0, 0.0, 1.0),
+            [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]
+        );
+        assert_eq!(
+            cut(1.0, 0.0, -9.0, 1.0),
+            [(0.0, 0.0), (4.0, 0.0), (4.0, 2.0), (0.0, 2.0)]
+        );
+        assert!(cut(1.0, 0.0, 9.0, 1.0).is_empty());
+    }
+
+    /// 3.5 m to either side of a right angle, at 12 m and 9 m.
+    #[test]
+    fn a_crossing_is_occupied_over_half_of_both() {
+        let (a, b) = (
+            motion((-12.0, 0.0), 0.0, 30.0),
+            motion((0.0, -9.0), 90.0, 20.0),
+        );
+        let patch = meet(&a, &b).unwrap();
+        is(patch.ego, 108.5, 115.5);
+        is(patch.other, 105.5, 112.5);
+        is(patch.lead, -4.02, 10.02);
+        assert!(patch.parallel.is_none() && !patch.mixed && !patch.starts && !patch.ends);
+        // Too far aside, and too far ahead; just not.
+        let beside = |x: f32, y: f32| meet(&a, &motion((x, y), 90.0, 20.0)).is_some();
+        assert!(beside(21.4, -9.0) && !beside(21.6, -9.0));
+        assert!(beside(-15.4, -9.0) && !beside(-15.6, -9.0));
+        assert!(beside(0.0, 3.4) && !beside(0.0, 3.6));
+        assert!(beside(0.0, -23.4) && !beside(0.0, -23.6));
+    }
+
+    #[test]
+    fn in_a_lane_vehicles_are_apart_by_their_lengths() {
+        let (a, b) = (
+            motion((0.0, 0.0), 0.0, 30.0),
+            motion((10.0, 1.0), 0.0, 40.0),
+        );
+        let patch = meet(&a, &b).unwrap();
+        // The other is 10 m ahead at the same arc length.
+        is(patch.lead, 5.0 - 0.02, 15.0 + 0.02);
+        is(patch.ego, 105.0, 130.0);
+        is(patch.other, 100.0, 125.0);
+        let [ego, other] = patch.parallel.unwrap();
+        is(ego, 105.0, 130.0);
+        is(other, 100.0, 125.0);
+        assert!(meet(&a, &motion((10.0, 2.1), 0.0, 40.0)).is_none());
+        let head_on = meet(&a, &motion((40.0, 1.0), 180.0, 40.0)).unwrap();
+        assert!(head_on.mixed && head_on.parallel.is_none());
+    }
+
+    #[test]
+    fn what_reaches_an_end_of_a_route_goes_on_beyond_it() {
+        let (a, b) = (
+            motion((-2.0, 0.0), 0.0, 30.0),
+            motion((0.0, -9.0), 90.0, 11.0),
+        );
+        let ends = |first, last| meet(&Motion { first, ..a }, &Motion { last, ..b }).unwrap();
+        let plain = ends(false, false);
+        is(plain.ego, 100.0, 105.5);
+        is(plain.other, 105.5, 111.0);
+        let far = ends(true, true);
+        is(far.ego, -FAR, 105.5);
+        is(far.other, 105.5, FAR);
+        assert!(!far.starts && !far.ends, "they only cross");
+        // What ends a millimetre before the end is at it; what ends farther, not.
+        let whole = |interval: Span| {
+            placed(
+                interval,
+                &Motion {
+                    first: true,
+                    last: true,
+                    ..a
+                },
+            )
+        };
+        let span = |from, to| Span { from, to };
+        is(whole(span(0.0009, 29.9991)), -FAR, FAR);
+        is(whole(span(0.0011, 29.9988)), 100.0011, 129.9988);
+    }
+
+    #[test]
+    fn a_lane_starts_or_ends_with_either_route() {
+        let meets = |change: fn(&mut Motion, &mut Motion)| {
+            let (mut a, mut b) = (motion((0.0, 0.0), 0.0, 30.0), motion((0.0, 1.0), 0.0, 30.0));
+            change(&mut a, &mut b);
+            let patch = meet(&a, &b).unwrap();
+            (patch.starts, patch.ends)
+        };
+        assert_eq!(meets(|_, _| {}), (false, false));
+        assert_eq!(meets(|a, _| a.first = true), (true, false));
+        assert_eq!(meets(|_, b| b.first = true), (true, false));
+        assert_eq!(meets(|a, _| a.last = true), (false, true));
+        assert_eq!(meets(|_, b| b.last = true), (false, true));
+        // The other is far ahead: only the ego's end and the other's start are in it.
+        let apart = |change: fn(&mut Motion, &mut Motion)| {
+            let (mut a, mut b) = (
+                motion((0.0, 0.0), 0.0, 30.0),
+                motion((20.0, 1.0), 0.0, 30.0),
+            );
+            change(&mut a, &mut b);
+            let patch = meet(&a, &b).unwrap();
+            (patch.starts, patch.ends)
+        };
+        assert_eq!(apart(|a, _| a.first = true), (false, false));
+        assert_eq!(apart(|_, b| b.last = true), (false, false));
+        assert_eq!(apart(|a, b| (a.last, b.first) = (true, true)), (true, true));
+    }
+}

@@ -229,3 +229,64 @@ proptest! {
         }
     }
 }
+
+/// The straight route of `length` (m) whose middle is at `at`, in direction `heading` (rad).
+fn straight(at: [f64; 2], heading: f64, length: f64) -> Route<16> {
+    let end = |share: f64| {
+        let away = share * length;
+        Point::new(
+            (at[0] + away * heading.cos()) as f32,
+            (at[1] + away * heading.sin()) as f32,
+        )
+    };
+    Route::new([end(-0.5), end(0.5)]).unwrap()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 32, ..ProptestConfig::default() })]
+
+    /// Within 10 cm, with footprints that are larger by what is for rounding. Where nothing turns, zones are not larger than
+    /// what they cover.
+    #[test]
+    fn each_end_of_a_zone_of_straight_routes_is_touched(
+        at in (-4.0_f64..4.0, -4.0_f64..4.0), headings in [0.0_f64..6.3, 0.0_f64..6.3], lengths in [30.0_f64..60.0, 30.0_f64..60.0],
+        footprints in [any_footprint(), any_footprint()], tolerance in 0.0_f32..0.3,
+    ) {
+        const STEP: f64 = 0.02;
+        const NEAR: f64 = 0.1;
+        let routes = [straight([0.0; 2], headings[0], lengths[0]), straight([at.0, at.1], headings[1], lengths[1])];
+        let mut builder = Junction::<2, 32>::builder();
+        builder.tolerance(tolerance);
+        for (route, footprint) in routes.iter().zip(footprints) {
+            builder.path(route, Class::Car, footprint).unwrap();
+        }
+        let junction = builder.build().unwrap();
+        let inflation = crate::junction::zone::INFLATION;
+        let shape_at = |i: usize, s: f64| {
+            let Footprint { length, width } = footprints[i];
+            let more = 2.0 * (inflation + tolerance);
+            let larger = Footprint { length: length + more, width: width + more };
+            let pose = routes[i].polyline().pose(s as f32);
+            let heading = f64::from(pose.direction.y).atan2(pose.direction.x.into());
+            shape(&Place { s, at: wide(&pose.position), heading }, larger, [0.0; 2])
+        };
+        let near = |a: f64, b: f64| overlap(&shape_at(0, a), &shape_at(1, b));
+        let steps = |length: f64| (0..=(length / STEP) as usize).map(|i| i as f64 * STEP);
+        let [one, two] = [routes[0].length(), routes[1].length()].map(f64::from);
+        for zone in junction.conflict(PathId::new(0), PathId::new(1)).unwrap().zones() {
+            for (end, inwards) in [(zone.ego.from, NEAR), (zone.ego.to, -NEAR)] {
+                let s = f64::from(end) + inwards;
+                prop_assert!(end.abs() > 1e5 || steps(two).any(|t| near(s, t)), "ego {end} of {zone:?}");
+            }
+            for (end, inwards) in [(zone.other.from, NEAR), (zone.other.to, -NEAR)] {
+                let t = f64::from(end) + inwards;
+                prop_assert!(end.abs() > 1e5 || steps(one).any(|s| near(s, t)), "other {end} of {zone:?}");
+            }
+            for (end, inwards) in [(zone.lead.from, NEAR), (zone.lead.to, -NEAR)] {
+                let lead = f64::from(end) + inwards + f64::from(inflation) * inwards.signum();
+                let touched = |s: f64| (0.0..=two).contains(&(s - lead)) && near(s, s - lead);
+                prop_assert!(zone.is_lane() || steps(one).any(touched), "lead {end} of {zone:?}");
+            }
+        }
+    }
+}

@@ -336,4 +336,57 @@ mod tests {
         let found = zones(&ego, &other);
         found.into_iter().flatten().collect()
     }
+
+    #[test]
+    fn intervals_hold_their_ends_and_touch_within_a_millimetre() {
+        let span = |from, to| Span { from, to };
+        let one = span(2.0, 5.0);
+        assert!([2.0, 3.0, 5.0].into_iter().all(|x| one.contains(x)));
+        assert!(![1.99, 5.01].into_iter().any(|x| one.contains(x)));
+        assert_eq!(
+            [1.0, 3.0, 7.0].map(|x| one.including(x)),
+            [span(1.0, 5.0), one, span(2.0, 7.0)]
+        );
+        assert_eq!(one.hull(span(4.0, 9.0)), span(2.0, 9.0));
+        assert_eq!(one.hull(span(-1.0, 3.0)), span(-1.0, 5.0));
+        for (other, touches) in [
+            ((5.0009, 9.0), true),
+            ((5.0012, 9.0), false),
+            ((0.0, 1.9991), true),
+            ((0.0, 1.9988), false),
+        ] {
+            let other = span(other.0, other.1);
+            assert_eq!(
+                (one.touches(other), other.touches(one)),
+                (touches, touches),
+                "{other:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_middle_of_a_band_is_half_way_and_swapped_it_is_the_negative() {
+        let zone = conflicts(
+            &[(-50.0, 0.0), (50.0, 0.0)],
+            &[(-30.0, -30.0), (0.0, 0.0), (50.0, 0.0)],
+        )[0];
+        let middle = zone.middle();
+        assert!((middle - zone.lead.from - (zone.lead.to - middle)).abs() < 1e-4);
+        assert!(middle.abs() > 1.0 && zone.swapped().middle() == -middle);
+        assert_eq!(zone.swapped().swapped(), zone);
+    }
+
+    /// 5 m and 2 m, the inflation for either, and how far a lane is beside the other.
+    #[test]
+    fn a_band_is_as_wide_as_both_are_long() {
+        let zone =
+            |beside: f32| conflicts(&[(0.0, 0.0), (80.0, 0.0)], &[(0.0, beside), (80.0, beside)]);
+        let near = |a: f32, b: f32| assert!((a - b).abs() < 1e-3, "{a}, {b}");
+        for beside in [0.0, 1.5, 2.03] {
+            let lead = zone(beside)[0].lead;
+            near(lead.from, -5.06);
+            near(lead.to, 5.06);
+        }
+        assert!(zone(2.05).is_empty());
+    }
 }

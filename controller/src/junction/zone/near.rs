@@ -119,3 +119,101 @@ fn chunks(pieces: usize) -> impl Iterator<Item = Range<usize>> {
         .step_by(CHUNK)
         .map(move |from| from..(from + CHUNK).min(pieces))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Footprint;
+    use crate::junction::route::Route;
+
+    fn piece(start: (f32, f32), end: (f32, f32), length: f32) -> Piece {
+        Piece {
+            start: Point::new(start.0, start.1),
+            end: Point::new(end.0, end.1),
+            from: 10.0,
+            to: 10.0 + length,
+        }
+    }
+
+    #[test]
+    fn boxes_are_near_if_they_come_within_reach_either_way() {
+        let around = |x: f32, y: f32| Bounds::around(&piece((x, y + 2.0), (x + 4.0, y), 5.0));
+        let one = around(0.0, 0.0);
+        assert_eq!(
+            (one.low, one.high),
+            (Point::new(0.0, 0.0), Point::new(4.0, 2.0))
+        );
+        for (x, y, near) in [
+            (6.9, 0.0, true),
+            (7.1, 0.0, false),
+            (-6.9, 0.0, true),
+            (-7.1, 0.0, false),
+            (0.0, 4.9, true),
+            (0.0, 5.1, false),
+            (0.0, -4.9, true),
+            (0.0, -5.1, false),
+        ] {
+            assert_eq!(one.near(&around(x, y), 3.0), near, "{x}, {y}");
+        }
+    }
+
+    #[test]
+    fn a_box_is_around_the_points_of_its_pieces() {
+        let points =
+            [(0.0, 0.0), (1.0, 5.0), (2.0, -3.0), (9.0, 1.0)].map(|(x, y)| Point::new(x, y));
+        let of = |pieces| Bounds::of(&points, pieces);
+        let is = |bounds: Bounds, low: (f32, f32), high: (f32, f32)| {
+            let corners = (Point::new(low.0, low.1), Point::new(high.0, high.1));
+            assert_eq!((bounds.low, bounds.high), corners);
+        };
+        is(of(0..1), (0.0, 0.0), (1.0, 5.0));
+        is(of(1..3), (1.0, -3.0), (9.0, 5.0));
+        is(of(2..8), (2.0, -3.0), (9.0, 1.0));
+        assert!(!of(1..1).near(&of(9..12), 1e3));
+    }
+
+    #[test]
+    fn discs_are_near_by_half_of_each_length_and_the_reach() {
+        // Middles at 0, and at x; lengths of 4 m and 6 m; a reach of 3 m; a hundredth more.
+        let one = piece((-2.0, 0.0), (2.0, 0.0), 4.0);
+        let at = |x: f32| piece((x, -3.0), (x, 3.0), 6.0);
+        for (x, near) in [(8.04, true), (8.06, false), (-8.04, true), (-8.06, false)] {
+            assert_eq!(discs_near(&one, &at(x), 3.0), near, "{x}");
+            assert_eq!(discs_near(&at(x), &one, 3.0), near, "{x}");
+        }
+    }
+
+    #[test]
+    fn pieces_come_in_chunks_of_eight() {
+        let all = |pieces| chunks(pieces).collect::<std::vec::Vec<_>>();
+        assert_eq!(all(20), [0..8, 8..16, 16..20]);
+        assert_eq!(all(16), [0..8, 8..16]);
+        assert!(all(0).is_empty());
+    }
+
+    #[test]
+    fn pieces_far_apart_are_not_met_and_all_that_are_near_are() {
+        let points = (0..20_u8).map(|i| Point::new(5.0 * f32::from(i), 0.0));
+        let long = Route::<32>::new(points).unwrap();
+        let points = [-40.0, -20.0, 0.0, 20.0, 40.0].map(|y| Point::new(52.0, y));
+        let short = Route::<8>::new(points).unwrap();
+        let footprint = Footprint::PAPER;
+        let [long, short] =
+            [long.polyline(), short.polyline()].map(|line| Body::new(line, footprint, 0.0));
+        let mut met = std::vec::Vec::new();
+        near_pieces(&long, &short, &mut |a, b| {
+            met.push((a.straight().arc, b.straight().arc));
+        });
+        // 5.5 m from the crossing at 52 m, or a little more.
+        let mut expected = std::vec::Vec::new();
+        for a in [45.0, 50.0, 55.0] {
+            expected.extend([(a, 20.0), (a, 40.0)]);
+        }
+        assert!(expected.iter().all(|pair| met.contains(pair)), "{met:?}");
+        assert!(
+            met.iter()
+                .all(|&(a, b)| (40.0..=60.0).contains(&a) && (20.0..=40.0).contains(&b)),
+            "{met:?}"
+        );
+    }
+}

@@ -269,6 +269,7 @@ const fn unseen(contract: &Contract) -> Option<ContractError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shield::contract::tests::INEXACT;
     use crate::shield::margin::unlimited;
 
     /// Up to this speed (m/s) the slowest ego goes that the changed worst case allows.
@@ -296,6 +297,155 @@ mod tests {
         ];
         for speed in slowest {
             assert!((speed - 0.01).abs() < 1e-5, "{speed} m/s");
+        }
+    }
+
+    /// What is said of [`INEXACT`] after `change`: the number, whether the lower end is outside, and both ends.
+    fn fault(change: impl FnOnce(&mut Contract)) -> Option<(&'static str, bool, [f32; 2])> {
+        let mut contract = INEXACT;
+        change(&mut contract);
+        let error = first_fault(&contract)?;
+        Some((error.field(), error.excludes_low(), error.range()))
+    }
+
+    #[track_caller]
+    fn named(field: &str, open: bool, [low, high]: [f32; 2], change: impl FnOnce(&mut Contract)) {
+        let (name, excludes, [from, to]) = fault(change).expect(field);
+        assert_eq!((name, excludes), (field, open));
+        let near = |a: f32, b: f32| (a - b).abs() <= 1e-5 * (1.0 + b.abs());
+        assert!(near(from, low) && near(to, high), "{field}: {from}, {to}");
+    }
+
+    #[test]
+    fn each_number_that_is_none_is_named_with_its_range() {
+        const NAN: f32 = f32::NAN;
+        assert_eq!(fault(|_| {}), None);
+        named("period", false, [0.01, 1.0], |c| c.period = NAN);
+        named("jitter", false, [0.0, 0.035], |c| c.jitter = NAN);
+        named("latency", false, [0.0, 0.94], |c| c.latency = NAN);
+        named("ego.lag", false, [0.0, 1.0], |c| c.ego.lag = NAN);
+        named("ego.gain", false, [0.0, 0.5], |c| c.ego.gain = NAN);
+        named("ego.disturbance", false, [0.0, 5.0], |c| {
+            c.ego.disturbance = NAN;
+        });
+        named("position_error", false, [0.0, 10.0], |c| {
+            c.position_error = NAN;
+        });
+        named("speed_error", false, [0.0, 10.0], |c| c.speed_error = NAN);
+        named("slack", false, [0.01, 10.0], |c| c.slack = NAN);
+        named("other.max_speed", true, [0.0, 100.0], |c| {
+            c.other.max_speed = NAN;
+        });
+        named("other.acceleration", true, [0.0, 20.0], |c| {
+            c.other.acceleration = NAN;
+        });
+        named("other.braking", true, [0.0, 20.0], |c| {
+            c.other.braking = NAN;
+        });
+        named("follower.reaction", false, [0.0, 10.0], |c| {
+            c.follower.reaction = NAN;
+        });
+        named("follower.braking", true, [0.0, 9.0], |c| {
+            c.follower.braking = NAN;
+        });
+        // From (0.01 + 0.5)/0.75 to (9 − 0.5)/1.25.
+        named("ego.braking", false, [0.68, 6.8], |c| c.ego.braking = NAN);
+        named("ego.emergency", false, [5.0, 6.8], |c| {
+            c.ego.emergency = NAN;
+        });
+        // What 4 m/s² are at most.
+        named("ego.acceleration", true, [0.0, 2.8], |c| {
+            c.ego.acceleration = NAN;
+        });
+        named("ego.go", false, [0.68, 2.0], |c| c.ego.go = NAN);
+        // Twice an error of 0.1, 3 and 8 m/s² for 0.54 s, and 1.75 + 1 / 0.75 m/s² for a period.
+        named("ego.max_speed", false, [6.458_333, 20.0], |c| {
+            c.ego.max_speed = NAN;
+        });
+    }
+
+    #[test]
+    fn an_exact_ego_brakes_as_gently_as_it_likes() {
+        named("ego.braking", true, [0.0, 9.0], |c| {
+            (c.ego.gain, c.ego.disturbance) = (0.0, 0.0);
+            c.ego.braking = f32::NAN;
+        });
+    }
+
+    #[test]
+    fn an_ego_accelerates_no_harder_than_it_or_its_follower_brakes() {
+        // 1.2 m/s² lead to 2 at most.
+        let by = |braking: f32, follower: f32| {
+            move |c: &mut Contract| {
+                (c.ego.braking, c.follower.braking) = (braking, follower);
+                c.ego.acceleration = f32::NAN;
+            }
+        };
+        named("ego.acceleration", true, [0.0, 1.2], by(1.2, 1.0));
+        named("ego.acceleration", true, [0.0, 1.2], by(1.0, 2.0));
+    }
+
+    #[test]
+    fn each_number_of_the_rule_is_named_with_its_range() {
+        let by = |change: fn(&mut Contract, &mut Precedence)| {
+            move |c: &mut Contract| {
+                let mut rule = c.precedence.unwrap();
+                change(c, &mut rule);
+                c.precedence = Some(rule);
+            }
+        };
+        named("jitter", false, [0.0, 0.0125], by(|c, _| c.jitter = 0.02));
+        named(
+            "precedence.distance",
+            true,
+            [0.0, 200.0],
+            by(|_, rule| rule.distance = f32::NAN),
+        );
+        named(
+            "precedence.braking",
+            true,
+            [0.0, 20.0],
+            by(|_, rule| rule.braking = f32::NAN),
+        );
+        // With turns, what 5 m/s² are at least.
+        named(
+            "precedence.braking",
+            true,
+            [0.0, 3.25],
+            by(|_, rule| rule.braking = 3.3),
+        );
+        assert_eq!(
+            fault(by(|_, rule| (rule.braking, rule.patience) = (3.3, 0))),
+            None
+        );
+        named(
+            "precedence.patience",
+            false,
+            [5.0, 65535.0],
+            by(|_, rule| rule.patience = 4),
+        );
+        // 0.225 m/s may be taken for rest.
+        named(
+            "ego.max_speed",
+            true,
+            [6.673_333, 20.0],
+            by(|c, _| c.ego.max_speed = 6.67),
+        );
+        assert_eq!(fault(by(|c, _| c.ego.max_speed = 6.68)), None);
+    }
+
+    #[test]
+    fn a_range_has_its_upper_end_and_its_lower_one_unless_it_is_open() {
+        let fault = |value, range| first(&[("it", value, range, "")]).map(|error| error.value());
+        for (value, open, closed) in [
+            (1.0, Some(1.0), None),
+            (2.0, None, None),
+            (0.5, Some(0.5), Some(0.5)),
+            (1.5, None, None),
+            (2.5, Some(2.5), Some(2.5)),
+        ] {
+            assert_eq!(fault(value, above(1.0, 2.0)), open, "{value}");
+            assert_eq!(fault(value, from(1.0, 2.0)), closed, "{value}");
         }
     }
 }

@@ -344,8 +344,34 @@ impl Contract {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
+
+    /// Of a drivetrain that is a quarter off and half a m/s² more, in 0.5 s and some jitter.
+    pub(in crate::shield) const INEXACT: Contract = Contract {
+        jitter: 0.01,
+        latency: 0.3,
+        position_error: 0.2,
+        speed_error: 0.1,
+        slack: 0.02,
+        ego: Ego {
+            max_speed: 15.0,
+            acceleration: 2.0,
+            go: 1.0,
+            braking: 5.0,
+            emergency: 6.0,
+            lag: 0.2,
+            gain: 0.25,
+            disturbance: 0.5,
+        },
+        other: Other {
+            max_speed: 20.0,
+            acceleration: 4.0,
+            braking: 9.0,
+        },
+        precedence: Some(Precedence::new(10.0, 5, 2.0, 10)),
+        ..Contract::WORST_CASE
+    };
 
     #[test]
     fn the_named_contracts_are_in_range() {
@@ -435,5 +461,142 @@ mod tests {
             stop(|contract, _| contract.speed_error = 6.0),
             "ego.max_speed = 15 is outside (24.975, 15]: ",
         );
+    }
+
+    /// A contract of which no two numbers are the same.
+    const OWN: Contract = Contract {
+        period: 0.2,
+        latency: 0.3,
+        jitter: 0.02,
+        position_error: 0.4,
+        speed_error: 0.15,
+        slack: 0.05,
+        ego: Ego {
+            max_speed: 19.0,
+            acceleration: 2.5,
+            go: 1.5,
+            braking: 4.0,
+            emergency: 6.0,
+            lag: 0.25,
+            gain: 0.1,
+            disturbance: 0.35,
+        },
+        other: Other {
+            max_speed: 20.0,
+            acceleration: 3.5,
+            braking: 9.0,
+        },
+        follower: Follower {
+            reaction: 0.7,
+            braking: 5.0,
+        },
+        precedence: Some(Precedence::new(10.0, 6, 2.0, 0)),
+    };
+
+    #[test]
+    fn each_number_is_set_and_got_by_its_name() {
+        let builder = Contract::builder()
+            .period(OWN.period())
+            .latency(OWN.latency())
+            .jitter(OWN.jitter())
+            .position_error(OWN.position_error())
+            .speed_error(OWN.speed_error())
+            .slack(OWN.slack())
+            .ego_max_speed(OWN.ego().max_speed)
+            .ego_acceleration(OWN.ego().acceleration)
+            .ego_go(OWN.ego().go)
+            .ego_braking(OWN.ego().braking);
+        assert_eq!(builder.unchecked().ego.emergency, OWN.ego.braking);
+        let builder = builder
+            .ego_emergency(OWN.ego().emergency)
+            .ego_lag(OWN.ego().lag)
+            .ego_gain(OWN.ego().gain)
+            .ego_disturbance(OWN.ego().disturbance)
+            .other_max_speed(OWN.other().max_speed)
+            .other_acceleration(OWN.other().acceleration)
+            .other_braking(OWN.other().braking)
+            .follower_reaction(OWN.follower().reaction)
+            .follower_braking(OWN.follower().braking)
+            .precedence(OWN.precedence());
+        assert_eq!(builder.build(), Ok(OWN));
+    }
+
+    #[test]
+    fn times_are_made_of_latency_jitter_lag_and_period() {
+        let near = |a: f32, b: f32| assert!((a - b).abs() < 1e-6, "{a}, {b}");
+        near(OWN.switching(), 0.38);
+        near(OWN.response(), 0.63);
+        near(OWN.shortest_period(), 0.16);
+        near(OWN.rest_speed(), 0.075);
+        let responds_late = |latency: f32| {
+            let contract = Contract::builder().jitter(0.01).latency(latency);
+            contract.build().unwrap().responds_late()
+        };
+        assert_eq!([0.03, 0.05].map(responds_late), [false, true]);
+        assert!(!Contract::WORST_CASE.responds_late());
+    }
+
+    #[test]
+    fn an_ego_is_exact_without_gain_error_and_disturbance_only() {
+        let exact = |gain, disturbance| {
+            let mut contract = OWN;
+            (contract.ego.gain, contract.ego.disturbance) = (gain, disturbance);
+            contract.is_exact()
+        };
+        assert!(exact(0.0, 0.0));
+        assert!(!exact(0.1, 0.0) && !exact(0.0, 0.1));
+    }
+
+    /// A contract after `change`.
+    fn changed(change: fn(&mut Contract)) -> Contract {
+        let mut contract = OWN;
+        change(&mut contract);
+        contract
+    }
+
+    #[test]
+    fn commands_lead_to_the_same_unless_a_number_of_the_drivetrain_differs() {
+        let differs: [fn(&mut Contract); 6] = [
+            |c| c.latency += 0.1,
+            |c| c.ego.lag += 0.1,
+            |c| c.ego.gain += 0.1,
+            |c| c.ego.disturbance += 0.1,
+            |c| c.ego.emergency += 0.1,
+            |c| c.ego.acceleration += 0.1,
+        ];
+        for (i, change) in differs.into_iter().enumerate() {
+            assert!(!changed(change).acts_as(&OWN), "{i}");
+        }
+        assert!(changed(|c| c.other.max_speed += 1.0).acts_as(&OWN));
+    }
+
+    #[test]
+    fn plans_are_kept_if_the_ego_is_the_same_and_no_number_of_the_others_is_worse() {
+        let never: [fn(&mut Contract); 4] = [
+            |c| c.ego.max_speed -= 1.0,
+            |c| c.period += 0.1,
+            |c| c.slack += 0.1,
+            |c| c.precedence = None,
+        ];
+        for (i, change) in never.into_iter().enumerate() {
+            assert!(!changed(change).keeps_plans_of(&OWN), "{i}");
+            assert!(!OWN.keeps_plans_of(&changed(change)), "{i}");
+        }
+        let worse: [fn(&mut Contract); 9] = [
+            |c| c.latency += 0.1,
+            |c| c.jitter += 0.01,
+            |c| c.position_error += 0.1,
+            |c| c.speed_error += 0.1,
+            |c| c.other.max_speed += 1.0,
+            |c| c.other.acceleration += 0.1,
+            |c| c.other.braking += 0.1,
+            |c| c.follower.reaction += 0.1,
+            |c| c.follower.braking -= 0.1,
+        ];
+        for (i, change) in worse.into_iter().enumerate() {
+            assert!(!changed(change).keeps_plans_of(&OWN), "{i}");
+            assert!(OWN.keeps_plans_of(&changed(change)), "{i}");
+        }
+        assert!(OWN.keeps_plans_of(&OWN));
     }
 }

@@ -207,3 +207,54 @@ fn periods_without_a_call_that_are_not_counted_are_caught() {
 fn motion_that_may_have_been_a_rest_in_between_is_caught() {
     assert!(caught::<Sound>(Fault::Motion));
 }
+
+#[test]
+fn a_set_has_the_zones_of_its_bits() {
+    assert_eq!(
+        [0, 1, 2, 7, 8, 255].map(|zone| has(0b1000_0101, zone)),
+        [true, false, true, true, false, false]
+    );
+}
+
+/// It has stood for four periods, in each of which it may have crept 0.384 m/s.
+#[test]
+fn who_stands_in_a_crossing_holds_it() {
+    use crate::junction::ConflictKind;
+    let contract = Contract::ALL_WAY_STOP
+        .to_builder()
+        .speed_error(0.1)
+        .position_error(0.3);
+    let contract = contract.build().unwrap();
+    let span = |from, to| Span { from, to };
+    let zone = |from, kind| Zone {
+        ego: span(from, from + 8.0),
+        other: span(40.0, 48.0),
+        lead: span(-20.0, 20.0),
+        kind,
+    };
+    let zones = [
+        zone(50.0, ConflictKind::Merging),
+        zone(50.0, ConflictKind::Crossing),
+        zone(54.0, ConflictKind::Crossing),
+    ];
+    let held = |s: f32, [mine, theirs]: [u16; 2]| {
+        let mut pair = PairMemory::default();
+        let mut ego = Presence::default();
+        (ego.standstill.surely, pair.other.standstill.surely) = (mine, theirs);
+        pair.hold::<Sound>(&contract, &ego, zones.iter(), s);
+        let right = Right {
+            of_way: RightOfWay::Other,
+            priority: Priority::FirstCome,
+            in_turns: RightOfWay::Other,
+        };
+        pair.claims(&contract, Precedence::ALL_WAY_STOP, right, &ego)
+    };
+    let crept = 0.4 * (0.075 + 0.2 + 0.5 * 0.1 * 24.0 / 11.0) + 0.3;
+    assert_eq!(held(50.0 + crept - 0.002, [4, 4]), 0);
+    assert_eq!(held(50.0 + crept + 0.002, [4, 4]), 0b010);
+    assert_eq!(held(56.0, [4, 4]), 0b110);
+    assert_eq!(held(57.99, [9, 4]), 0b110);
+    assert_eq!(held(58.0, [4, 9]), 0b100);
+    assert_eq!(held(62.0, [4, 4]), 0);
+    assert_eq!([held(56.0, [3, 4]), held(56.0, [4, 3])], [0, 0]);
+}

@@ -112,3 +112,93 @@ fn an_error_that_blurs_who_is_ahead_is_refused() {
         "only the first can be entered"
     );
 }
+
+/// What is left of place and heading of an ego that is let in on a road with a right angle at 20 m.
+fn admitted(change: impl Fn(&mut Vehicle)) -> Option<[crate::headroom::Room; 2]> {
+    let site = site(&[route(&[(0.0, 0.0), (20.0, 0.0), (20.0, 20.0)])]);
+    let mut own = ego(&site, [10.0, 5.0]);
+    change(&mut own);
+    let admitted = super::super::door::ego(site.way(EGO).unwrap(), &WORST, &own);
+    admitted.ok().map(|admitted| admitted.pose)
+}
+
+#[test]
+fn ends_of_ranges_are_let_in_and_what_is_beyond_them_is_not() {
+    let along = |s: f32| {
+        admitted(|v| {
+            v.s = s;
+            // Where that is on the road.
+            v.pose.position = if s < 20.0 {
+                Point::new(s, 0.0)
+            } else {
+                Point::new(20.0, s - 20.0)
+            };
+            v.pose.direction = if s < 20.0 {
+                unit(1.0, 0.0)
+            } else {
+                unit(0.0, 1.0)
+            };
+        })
+    };
+    assert!(along(-0.019).is_some() && along(-0.021).is_none());
+    assert!(along(40.019).is_some() && along(40.021).is_none());
+    let speed = |speed: f32| admitted(|v| v.speed = speed).is_some();
+    assert!(speed(Vehicle::MAX_SPEED) && !speed(Vehicle::MAX_SPEED + 0.1));
+    assert!(speed(-Vehicle::REVERSING) && !speed(-Vehicle::REVERSING - 0.01));
+    let long = |norm: f32| admitted(|v| v.pose.direction = unit(norm, 0.0)).is_some();
+    assert!(long(0.901) && long(1.099) && !long(0.899) && !long(1.101));
+}
+
+#[test]
+fn what_is_left_of_place_and_heading_is_told() {
+    let near = |room: crate::headroom::Room, left: f32, most: f32| {
+        let near = (room.left - left).abs() < 1e-4 && (room.share - left / most).abs() < 1e-2;
+        assert!(near, "{room:?}, {left} of {most}");
+    };
+    let [offset, heading] = admitted(|v| v.pose.position.y = 0.015).unwrap();
+    near(offset, 0.005, 0.02);
+    near(heading, 0.5, 0.5);
+    assert!(admitted(|v| v.pose.position.y = -0.021).is_none());
+    let turned = |cosine: f32, norm: f32| {
+        let sine = (1.0 - cosine * cosine).sqrt();
+        admitted(|v| v.pose.direction = unit(norm * cosine, norm * sine))
+    };
+    near(turned(0.6, 1.0).unwrap()[1], 0.1, 0.5);
+    near(turned(0.51, 0.95).unwrap()[1], 0.01, 0.5);
+    assert!(turned(0.49, 1.0).is_none() && turned(0.48, 1.05).is_none());
+}
+
+/// Within what its place may be off by, it may have the direction on either side.
+#[test]
+fn near_a_corner_a_vehicle_has_the_direction_before_or_after_it() {
+    let at = |s: f32, (x, y): (f32, f32)| {
+        admitted(|v| {
+            v.s = s;
+            v.pose.position = if s < 20.0 {
+                Point::new(s, 0.0)
+            } else {
+                Point::new(20.0, s - 20.0)
+            };
+            v.pose.direction = unit(x, y);
+        })
+        .is_some()
+    };
+    let (before, after) = ((1.0, 0.0), (0.0, 1.0));
+    assert!(at(19.99, after) && !at(19.97, after));
+    assert!(at(20.01, before) && !at(20.03, before));
+}
+
+#[test]
+fn a_coordinate_out_of_range_is_the_one_that_is_named() {
+    let named = |x: f32, y: f32| {
+        let [own, _] = refused(|vehicle| vehicle.pose.position = Point::new(x, y));
+        let own = own.unwrap();
+        (own.field, own.value)
+    };
+    assert_eq!(named(9000.0, 3.0), (Field::Position, 9000.0));
+    assert_eq!(named(3.0, -9000.0), (Field::Position, -9000.0));
+    assert_eq!(named(-9000.0, 8000.0), (Field::Position, -9000.0));
+    assert!(named(3.0, f32::NAN).1.is_nan() && named(f32::NAN, 3.0).1.is_nan());
+    let [own, _] = refused(|vehicle| vehicle.pose.position = Point::new(8192.0, 0.0));
+    assert_eq!(own.unwrap().field, Field::Offset);
+}

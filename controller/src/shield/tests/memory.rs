@@ -486,3 +486,49 @@ fn whoever_leaves_a_zone_without_a_plan_enters_no_other_before_somebody() {
     let far = stands_between(50.0);
     assert!(far.plan.is_some(), "{far}");
 }
+
+/// One that is missing accelerated by the former contract until the last call, and by the new one since.
+#[test]
+fn what_others_did_under_a_former_contract_counts_by_it() {
+    let site = crossing();
+    let breach = |speed: f32| {
+        let mut run = Run::new(&site, WORST);
+        run.decide([20.0, 5.0], &[(1, [10.0, 5.0])], 0.0);
+        run.decide([20.5, 5.0], &[], 0.0);
+        let gentle = WORST
+            .to_builder()
+            .other_acceleration(1.0)
+            .ego_acceleration(1.0)
+            .ego_go(1.0);
+        run.shield.set_contract(gentle.build().unwrap()).unwrap();
+        run.decide([21.0, 5.0], &[(1, [11.02, speed])], 0.0).breach
+    };
+    assert_eq!(breach(5.39), None);
+    assert_eq!(breach(5.43), Some(Breach::Other(1)));
+}
+
+#[test]
+fn a_time_is_news_if_it_is_later_than_the_last_one() {
+    let site = crossing();
+    let mut run = Run::new(&site, WORST);
+    let at = Instant::from_millis;
+    assert!(run.shield.is_new(at(0)));
+    run.decide([20.0, 5.0], &[], 0.0);
+    assert_eq!(
+        [7_099, 7_100, 7_101].map(|now| run.shield.is_new(at(now))),
+        [false, false, true]
+    );
+}
+
+/// Half of the jitter either way is twice the jitter from one call to the next, and a microsecond for rounding.
+#[test]
+fn what_is_left_of_the_jitter_is_counted_from_twice_of_it() {
+    let site = crossing();
+    let contract = WORST.to_builder().jitter(0.01).build().unwrap();
+    let mut run = Run::new(&site, contract);
+    assert_eq!(run.decide([20.0, 5.0], &[], 0.0).headroom.period, None);
+    run.millis += 5;
+    let room = run.decide([20.5, 5.0], &[], 0.0).headroom.period.unwrap();
+    assert!((room.left - 0.015_001).abs() < 1e-6, "{room:?}");
+    assert!((room.share - 0.75).abs() < 1e-3, "{room:?}");
+}

@@ -1,0 +1,293 @@
+//! What is feared of others, in numbers, with sensors that err.
+
+use super::hazard::{Hazard, Who};
+use super::unwatched::Closed;
+use super::*;
+
+/// Sensors err by 0.3 m and by 0.2 m/s.
+fn errs(contract: Contract) -> Contract {
+    let builder = contract.to_builder().position_error(0.3).speed_error(0.2);
+    builder.slack(0.05).build().unwrap()
+}
+
+#[track_caller]
+fn near(a: f32, b: f32) {
+    assert!((a - b).abs() < 1e-3, "{a}, {b}");
+}
+
+/// The only hazard of one other on path 1, over whom the ego has the precedence that is named.
+fn only(site: &Site, contract: Contract, own: State, other: State, claims: u8) -> Option<Hazard> {
+    let hazards = hazards(site, &errs(contract), own, &[(1, other, claims)]);
+    let found: std::vec::Vec<_> = hazards.iter().copied().collect();
+    assert!(found.len() <= 1);
+    found.first().copied()
+}
+
+#[test]
+fn a_crossing_is_left_when_the_ego_is_seen_to_be_past_it() {
+    let site = crossing();
+    let zone = zone(&site, 1);
+    let hazard = only(&site, WORST, [30.0, 6.0], [20.0, 5.0], 0).unwrap();
+    let who = Who::Watched {
+        number: 1,
+        place: 0,
+    };
+    assert_eq!(
+        (hazard.who, hazard.zone, hazard.suspect, hazard.yields),
+        (who, 0, true, false)
+    );
+    near(hazard.target, zone.ego.to - 30.0 + 0.9);
+    near(hazard.limit, zone.ego.from - 30.3);
+    near(hazard.rest, zone.ego.from - 30.3);
+    assert_eq!(hazard.rest_beyond, FAR);
+    let Passage::Before { distance, speed } = hazard.passage else {
+        panic!("{hazard:?}");
+    };
+    near(distance, zone.other.from - 20.3);
+    near(speed, 5.2);
+}
+
+#[test]
+fn a_zone_is_no_hazard_any_more_once_either_has_certainly_left_it() {
+    let site = crossing();
+    let zone = zone(&site, 1);
+    let feared = |own: f32, other: f32| only(&site, WORST, [own, 1.0], [other, 1.0], 0).is_some();
+    assert!(feared(zone.ego.to + 0.29, 20.0) && !feared(zone.ego.to + 0.31, 20.0));
+    assert!(feared(20.0, zone.other.to + 0.29) && !feared(20.0, zone.other.to + 0.31));
+}
+
+#[test]
+fn behind_a_leader_the_ego_stops_where_it_may_come_to_rest() {
+    let site = site(&[east(), east()]);
+    let lead = zone(&site, 1).lead;
+    let hazard = only(&site, WORST, [20.0, 5.0], [50.0, 4.0], 0).unwrap();
+    assert_eq!((hazard.target, hazard.passage), (FAR, Passage::Never));
+    // 29.4 m between the two, of which the footprints take some, and what 3.8 m/s take at 8 m/s².
+    near(hazard.limit, 29.4 + lead.from + 0.9025);
+    near(hazard.rest, hazard.limit);
+    // Too near to be behind it.
+    let hazard = only(&site, WORST, [20.0, 5.0], [23.0, 4.0], 0).unwrap();
+    near(hazard.limit, 2.4 + lead.from);
+}
+
+#[test]
+fn in_a_lane_the_one_in_the_middle_is_not_ahead() {
+    let site = site(&[east(), east()]);
+    // The ego leads as it is sensed, by 0.3 m less than the other may be farther back.
+    let leads = |own: f32| only(&site, WORST, [own, 5.0], [50.0, 4.0], 0).is_none();
+    assert!(leads(50.01) && !leads(49.99));
+}
+
+#[test]
+fn a_lane_is_entered_with_a_gap_ahead_of_the_other() {
+    let site = site(&[east(), ramp()]);
+    let lane = zone(&site, 1);
+    let gap = |own: f32, contract, claims| {
+        let hazard = only(&site, contract, [own, 6.0], [30.0, 5.0], claims).unwrap();
+        near(hazard.target, lane.ego.from - own + 0.9);
+        near(hazard.limit, lane.ego.from - own - 0.3);
+        let Passage::Ahead {
+            gap,
+            speed,
+            arrives,
+        } = hazard.passage
+        else {
+            panic!("{hazard:?}");
+        };
+        near(speed, 5.2);
+        (gap, arrives)
+    };
+    let (before, arrives) = gap(40.0, WORST, 0);
+    near(before, lane.ego.from - 30.3 - lane.lead.to);
+    assert_eq!(arrives, FAR);
+    let (before, arrives) = gap(40.0, Contract::ALL_WAY_STOP, 0);
+    near(before, lane.ego.from - 30.3 - lane.lead.to);
+    let line = site.path(PathId::new(1)).unwrap().line();
+    near(arrives, line - 12.0 - 30.3);
+    assert_eq!(gap(40.0, Contract::ALL_WAY_STOP, precedence::ALL).1, FAR);
+}
+
+/// A half of the slack before its zone, at 3 m/s².
+#[test]
+fn precedence_opens_a_zone_before_which_the_other_can_stop() {
+    let site = crossing();
+    let stops = zone(&site, 1).other.from - 0.025 - 0.3 - 3.2 * 3.2 / 6.0;
+    let open = |other: f32, claims| {
+        let all_way = Contract::ALL_WAY_STOP;
+        only(&site, all_way, [30.0, 6.0], [other, 3.0], claims).is_none()
+    };
+    assert!(open(stops - 0.002, precedence::ALL) && !open(stops + 0.002, precedence::ALL));
+    assert!(!open(stops - 0.002, 0));
+    assert!(
+        only(
+            &site,
+            WORST,
+            [30.0, 6.0],
+            [stops - 1.0, 3.0],
+            precedence::ALL
+        )
+        .is_some()
+    );
+}
+
+#[test]
+fn what_is_closed_is_never_entered() {
+    let site = crossing();
+    let contract = errs(WORST);
+    let own = Own::new(&contract, &ego(&site, [30.0, 6.0]), -FAR);
+    let hazard = Hazard::closed(
+        &contract,
+        &own,
+        Closed {
+            number: 9,
+            from: 50.0,
+        },
+    );
+    assert!(hazard.is_closed() && hazard.who == Who::Unwatched(9));
+    assert!(!hazard.suspect && !hazard.yields);
+    near(hazard.limit, 19.7);
+    near(hazard.rest, 19.7);
+    assert_eq!((hazard.target, hazard.passage), (FAR, Passage::Never));
+}
+
+#[test]
+fn sensors_must_tell_a_quarter_of_the_lane_apart() {
+    let site = site(&[east(), east()]);
+    let enter = |error: f32| {
+        let contract = WORST.to_builder().position_error(error).build().unwrap();
+        Shield::<8>::enter(contract, &site, EGO).map(|_| ())
+    };
+    assert!(enter(2.49).is_ok());
+    let path = PathId::new(0);
+    let refused = EnterError::PositionError {
+        path,
+        value: 2.5,
+        below: 2.5,
+    };
+    assert_eq!(enter(2.5), Err(refused));
+}
+
+/// Another on path 1, seen before.
+fn known(site: &Site, contract: &Contract, state: State) -> other::Other {
+    let vehicle = on(site, PathId::new(1), state);
+    let mut other = other::Other::new(
+        contract,
+        1,
+        PathId::new(1),
+        &vehicle,
+        Instant::from_millis(0),
+    );
+    other.news = other::News::None;
+    other
+}
+
+#[test]
+fn one_behind_keeps_its_distance_once_it_has_had_the_gap() {
+    let site = site(&[east(), east()]);
+    let zone = zone(&site, 1);
+    let contract = errs(WORST);
+    // At 10.2 m/s at most, behind an ego of 3.8 m/s at least.
+    let needs = margin::safe_gap(&contract, 10.2_f32, 3.8);
+    let gap = 60.0 - 0.3 - zone.lead.to - needs;
+    let settled = |s: f32, change: fn(&mut other::Other)| {
+        let own = Own::new(&contract, &ego(&site, [60.0, 4.0]), -FAR);
+        let mut other = known(&site, &contract, [s, 10.0]);
+        change(&mut other);
+        lane::settle::<Sound>(&contract, [zone, zone].iter(), &own, &mut other);
+        other.settled
+    };
+    assert_eq!(settled(gap - 0.3 - 0.005, |_| {}), 0b11);
+    assert_eq!(settled(gap - 0.3 + 0.005, |_| {}), 0);
+    assert_eq!(settled(58.0, |_| {}), 0);
+    assert_eq!(settled(58.0, |other| other.counted = 0b10), 0b10);
+    assert_eq!(
+        settled(58.0, |other| other.news = other::News::Appeared),
+        0b11
+    );
+    // It is not behind.
+    assert_eq!(settled(61.0, |other| other.news = other::News::Appeared), 0);
+}
+
+#[test]
+fn one_that_comes_out_of_sight_is_no_farther_and_no_faster_than_who_was_expected() {
+    let site = crossing();
+    let contract = errs(WORST);
+    let emerged = |s: f32, speed: f32, holds: bool| {
+        let mut other = known(&site, &contract, [10.0, 5.0]);
+        let span = |to: f32| Span { from: 0.0, to };
+        let source = Bounds {
+            s: span(s),
+            speed: span(speed),
+        };
+        other.emerge(source, holds);
+        assert_eq!(other.base, other.bounds);
+        other
+    };
+    let other = emerged(10.1, 5.1, true);
+    assert_eq!((other.bounds.s.to, other.bounds.speed.to), (10.1, 5.1));
+    assert_eq!((other.news, other.counted), (other::News::Emerged, u8::MAX));
+    for (s, speed) in [(9.0, 4.0), (11.0, 6.0)] {
+        let other = emerged(s, speed, false);
+        near(other.bounds.s.to, 10.3);
+        near(other.bounds.speed.to, 5.2);
+        assert_eq!((other.news, other.counted), (other::News::None, 0));
+    }
+}
+
+/// Both with a metre to spare.
+#[test]
+fn the_first_zone_that_neither_has_left_is_entered_next() {
+    let second = route(&[(20.0, -60.0), (20.0, 60.0)]);
+    let mut site = site(&[east(), north(), second]);
+    let way_zone = zone(&site, 1);
+    let farther = zone(&site, 2);
+    // Two zones of one path.
+    site.conflicts_mut()[1].zones[1] = Some(farther);
+    let contract = errs(WORST);
+    let way = site.way(EGO).unwrap();
+    let enters = |own: f32, s: f32, settled: u8| {
+        let mut other = known(&site, &contract, [s, 5.0]);
+        other.settled = settled;
+        [
+            other.entry::<Sound>(way, own, 1.0),
+            other.unsettled::<Sound>(way, own, 1.0),
+        ]
+    };
+    let (near, far) = (Some(way_zone.ego.from), Some(farther.ego.from));
+    assert_eq!(enters(20.0, 20.0, 0), [near, near]);
+    assert_eq!(enters(20.0, 20.0, 0b01), [near, far]);
+    assert_eq!(enters(20.0, 20.0, 0b10), [near, near]);
+    assert_eq!(enters(20.0, 20.0, 0b11), [near, None]);
+    assert_eq!(enters(way_zone.ego.to + 0.99, 20.0, 0), [near, near]);
+    assert_eq!(enters(way_zone.ego.to + 1.01, 20.0, 0), [far, far]);
+    assert_eq!(enters(20.0, way_zone.other.to + 1.29, 0), [near, near]);
+    assert_eq!(enters(20.0, way_zone.other.to + 1.31, 0), [None, None]);
+}
+
+#[test]
+fn what_is_found_counts_if_it_is_as_near_as_what_the_plan_does_next() {
+    let site = crossing();
+    let mut run = Run::new(&site, WORST);
+    let own = Own::new(&WORST, &ego(&site, [20.0, 5.0]), -FAR);
+    let inherited = Inherited::all(&WORST, [0.0; 2]);
+    let scene = scene::Scene {
+        ego: &own,
+        hazards: &mut Hazards::new(),
+        inherited: &inherited,
+        most: 2.5,
+    };
+    assert!(run.shield.is_nearer(&scene, 1.0, -3.0), "there is no plan");
+    let plan = Plan { go: 3 };
+    run.shield.memory.verified(plan, Instant::from_millis(0));
+    // It goes at 2.5 m/s².
+    for (wanted, found, nearer) in [
+        (1.0, -0.4, true),
+        (1.0, -0.6, false),
+        (2.0, 1.6, true),
+        (2.0, 1.4, false),
+        (0.5, 2.5, true),
+    ] {
+        let is = run.shield.is_nearer(&scene, wanted, found);
+        assert_eq!(is, nearer, "{found} for {wanted}");
+    }
+}
