@@ -1,8 +1,8 @@
 //! The judge of collisions: a rapier2d world that holds every vehicle as a cuboid.
 //!
 //! The simulator's own box test ([`cede_controller::separation`]) is fast; this one is an independent implementation, and
-//! slow (a microsecond or two a step). Safety is counted by the judge, and the fast
-//! test is held to agree with it (`sim/tests/agreement.rs`).
+//! slow (a microsecond or two a step). The collisions of campaigns are counted by the judge, and the fast
+//! test, which ends episodes, is held to agree with it (`sim/tests/agreement.rs`).
 
 use cede_controller::{Footprint, Point, Pose};
 use rapier2d::math::{Pose as Placement, Rotation, Vector};

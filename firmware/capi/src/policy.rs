@@ -112,14 +112,10 @@ fn described(policy: &Policy<'_>) -> cede_policy_info {
     cede_policy_info {
         provenance: weights.provenance(),
         width: u16::try_from(weights.network().width()).unwrap_or(u16::MAX),
-        features: match weights.features() {
-            FeatureSet::Raw => 0,
-            FeatureSet::Route => 1,
-            FeatureSet::Traffic => 2,
-            FeatureSet::Scene => 3,
-            FeatureSet::Rights => 4,
-            _ => u8::MAX,
-        },
+        features: (0..)
+            .zip(FeatureSet::ALL)
+            .find(|&(_, set)| set == weights.features())
+            .map_or(u8::MAX, |(number, _)| number),
         perspective: match weights.perspective() {
             Perspective::Joint => 0,
             Perspective::Ego => 1,

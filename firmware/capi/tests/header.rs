@@ -24,7 +24,7 @@ fn the_header_is_up_to_date() {
     let is_same = std::fs::read(&file).is_ok_and(|known| known == text);
     assert!(
         is_same,
-        "include/cede.h is not what the crate has: UPDATE_HEADER=1 cargo test --test header"
+        "include/cede.h is not what the crate has: in firmware/capi: UPDATE_HEADER=1 cargo test --test header"
     );
 }
 

@@ -39,7 +39,7 @@ fn the_embedded_policy_has_the_answer_of_the_header() {
     } else {
         assert_eq!(
             found, CEDE_EMBEDDED_ANSWER,
-            "the decisions are others: UPDATE_HEADER=1 cargo test --test known_answer --test header"
+            "the decisions are others: in firmware/capi, UPDATE_HEADER=1 cargo test --test known_answer --test header"
         );
     }
     assert_eq!(found, answer(&mut world), "whatever the storage holds");

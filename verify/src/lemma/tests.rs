@@ -256,3 +256,19 @@ fn the_rocq_development_is_about_the_code_as_it_is() {
         "proofs/Shipped.v differs from the code: cede verify lemmas --write rocq proofs/Shipped.v, and mend the proofs"
     );
 }
+
+/// The table of `docs/theorem.md` names every lemma, and the text how many there are.
+#[test]
+fn the_theorem_lists_every_lemma() {
+    let theorem = include_str!("../../../docs/theorem.md");
+    let rows = theorem.lines().filter(|line| line.starts_with("| L"));
+    let listed: Vec<&str> = rows.filter_map(|row| row.split('`').nth(1)).collect();
+    let asked: Vec<&str> = lemmas().iter().map(|lemma| lemma.id).collect();
+    let sorted = |mut names: Vec<&'static str>| {
+        names.sort_unstable();
+        names
+    };
+    assert_eq!(sorted(listed), sorted(asked.clone()));
+    let count = format!("has Z3 prove {} lemmas", asked.len());
+    assert!(theorem.contains(&count), "{count}");
+}
