@@ -130,6 +130,8 @@ pub(super) struct Commands {
     flights: Deque<Flight, { FLIGHTS + 1 }>,
     /// The accelerations that the ego may have had when the last one was given, its least and its largest (m/s²).
     had: [f32; 2],
+    /// What may have been commanded under former contracts may lead to this (m/s²).
+    former: [f32; 2],
 }
 
 /// A command on its way.
@@ -144,9 +146,9 @@ struct Flight {
 impl Flight {
     /// What it may lead to: the least and the largest acceleration, in m/s².
     #[inline(never)] // Once in flash.
-    fn bounds(self, contract: &Contract) -> [f32; 2] {
+    fn bounds(self, contract: &Contract, former: [f32; 2]) -> [f32; 2] {
         if self.command.is_nan() {
-            anything(contract)
+            hull(former, anything(contract))
         } else {
             [
                 weakest(contract, self.command),
@@ -172,7 +174,21 @@ impl Commands {
         Self {
             flights: Deque::new(),
             had: [0.0; 2],
+            former: [0.0; 2],
         }
+    }
+
+    /// From now on another contract says what commands lead to; until now `contract` did.
+    pub(super) fn forget(&mut self, contract: &Contract) {
+        *self = Self {
+            former: self.unknown_bounds(contract),
+            ..Self::unknown()
+        };
+    }
+
+    /// What a command that is not known may lead to, in m/s².
+    pub(super) fn unknown_bounds(&self, contract: &Contract) -> [f32; 2] {
+        hull(self.former, anything(contract))
     }
 
     /// `command` (m/s²) is given at `now`.
@@ -201,7 +217,7 @@ impl Commands {
         let latency = u32::try_from(micros(contract.latency)).unwrap_or(u32::MAX);
         let mut end = contract.switching();
         for flight in self.flights.iter().rev() {
-            each(end, flight.bounds(contract));
+            each(end, flight.bounds(contract, self.former));
             let left = latency.saturating_sub(flight.age(now));
             // The one before it acts until it is in effect. A microsecond is how exact a latency is.
             if left <= 1 {
@@ -214,9 +230,9 @@ impl Commands {
     /// Everything that may have been in effect since the last command was given, in m/s².
     fn in_effect(&self, contract: &Contract) -> [f32; 2] {
         let Some(last) = self.flights.back() else {
-            return anything(contract);
+            return self.unknown_bounds(contract);
         };
-        let mut bounds = last.bounds(contract);
+        let mut bounds = last.bounds(contract, self.former);
         self.acting(contract, last.given, |_, of| bounds = hull(bounds, of));
         bounds
     }
@@ -234,7 +250,7 @@ impl Commands {
     /// The accelerations that the ego may have at `now`, in m/s².
     fn has(&self, contract: &Contract, now: Instant) -> [f32; 2] {
         let Some(last) = self.flights.back() else {
-            return anything(contract);
+            return self.unknown_bounds(contract);
         };
         let elapsed = last.age(short(now)) as f32 * 1.0e-6;
         follow(contract, self.had, self.in_effect(contract), elapsed)
@@ -243,9 +259,9 @@ impl Commands {
     /// What acts until a command that is given at `now` is certainly followed.
     pub(super) fn inherited(&self, contract: &Contract, now: Instant) -> Inherited<f32> {
         let Some(last) = self.flights.back() else {
-            return Inherited::all(contract, anything(contract));
+            return Inherited::all(contract, self.unknown_bounds(contract));
         };
-        let (lag, mut bounds) = (contract.ego.lag, last.bounds(contract));
+        let (lag, mut bounds) = (contract.ego.lag, last.bounds(contract, self.former));
         let mut inherited = Inherited { parts: Vec::new() };
         self.acting(contract, short(now), |end, of| {
             bounds = hull(bounds, of);

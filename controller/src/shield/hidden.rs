@@ -87,6 +87,10 @@ pub(crate) struct Hidden {
     now: Instant,
     /// The plan in force is safe from everybody who was out of sight before.
     pub(super) holds: bool,
+    /// Since the last observation began, somebody in sight has become one who would be new.
+    lost: bool,
+    /// The same before that.
+    doubtful: bool,
 }
 
 /// Whoever is out of sight on a path is within these bounds.
@@ -121,7 +125,20 @@ impl Hidden {
             at: Instant::from_micros(0),
             now: Instant::from_micros(0),
             holds: false,
+            lost: false,
+            doubtful: false,
         }
+    }
+
+    /// Somebody who is in sight may be taken for one who comes into sight at the next call: its state was refused, it could not be
+    /// remembered, or its number is forgotten.
+    pub(super) const fn lose(&mut self) {
+        self.lost = true;
+    }
+
+    /// An observation begins.
+    pub(super) const fn begin(&mut self) {
+        self.doubtful = core::mem::replace(&mut self.lost, false);
     }
 
     /// Takes down what is in sight at `now`. What is refused changes nothing.
@@ -179,7 +196,7 @@ impl Hidden {
         }
     }
 
-    /// From where somebody comes who appears on `path`, if that is out of sight.
+    /// From where somebody comes who appears on `path`, if that is certainly out of sight.
     pub(super) fn source<R: Rules>(
         &self,
         contract: &Contract,
@@ -187,6 +204,9 @@ impl Hidden {
         vehicle: &Vehicle,
     ) -> Option<Bounds> {
         let edge = self.edges.iter().find(|edge| edge.path == path)?;
+        if self.doubtful {
+            return None;
+        }
         let bounds = edge.bounds::<R>(contract, self.now);
         Room::hold(bounds.rooms(contract, vehicle.s, vehicle.speed)).then_some(bounds)
     }

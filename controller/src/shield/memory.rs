@@ -1,6 +1,6 @@
 //! What the shield remembers of the ego from one decision to the next: its plan, its commands, where it was.
 
-use super::actuation::{Commands, Inherited, anything};
+use super::actuation::{Commands, Inherited};
 use super::bounds::Bounds;
 use super::contract::Contract;
 use super::margin;
@@ -102,9 +102,9 @@ impl Memory {
         self.commands.give(contract, acceleration, now);
     }
 
-    /// Nothing is known any more of what the commands lead to.
-    pub(crate) fn forget_commands(&mut self) {
-        self.commands = Commands::unknown();
+    /// What the commands given so far lead to, `contract` said; what they lead to from now on, another one.
+    pub(crate) fn forget_commands(&mut self, contract: &Contract) {
+        self.commands.forget(contract);
     }
 
     /// What was known of the ego says nothing about the next observation.
@@ -165,7 +165,7 @@ impl Memory {
         if self.blind <= 1 {
             self.commands.since_last(contract)
         } else {
-            anything(contract)
+            self.commands.unknown_bounds(contract)
         }
     }
 }

@@ -169,7 +169,9 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
             .is_some_and(|first| first && claims.all(|it| it))
     }
 
-    /// Assumes `contract` from the next decision on. The remembered plan is kept if it is safe under it.
+    /// Assumes `contract` from the last decision on: of what others have done since then, too. The remembered plan is kept if it
+    /// is safe under it, commands in flight act as the former contract has it, and whoever keeps its distance behind the ego
+    /// is expected to keep it as before.
     ///
     /// # Errors
     /// [`EnterError::PositionError`]; nothing is changed then.
@@ -190,7 +192,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         }
         self.memory.forget_ego();
         if !contract.acts_as(&self.contract) {
-            self.memory.forget_commands();
+            self.memory.forget_commands(&self.contract);
         }
         self.replaced |= !contract.keeps_plans_of(&self.contract);
         self.contract = contract;

@@ -47,6 +47,10 @@ impl<const N: usize> Tracks<N> {
 
     /// Nobody with this number is there any more.
     pub(crate) fn forget(&mut self, number: u16) {
+        let known = |other: &Other| other.number == number && !other.gone;
+        if self.watched.iter().any(known) || self.unwatched.knows(number) {
+            self.hidden.lose();
+        }
         self.watched.retain(|other| other.number != number);
         self.unwatched.retain(|entry| entry.number != number);
         self.walkers.forget(number);
@@ -115,6 +119,7 @@ impl<const N: usize> Tracks<N> {
             other.fresh = false;
         }
         self.unwatched.begin();
+        self.hidden.begin();
         self.coast::<R>(contract, now);
         // Who is known comes first, so that a newcomer finds as much room as there is.
         for newcomers in [false, true] {
@@ -131,6 +136,9 @@ impl<const N: usize> Tracks<N> {
             other.gone |= ahead.is_none();
         }
         self.hidden.look::<R>(contract);
+        if self.unwatched.beyond().is_some() {
+            self.hidden.lose();
+        }
         findings.closed = self.unwatched.end(way, ego.least);
         findings
     }
@@ -239,6 +247,7 @@ impl<const N: usize> Tracks<N> {
 
     /// Closes the zones of a track whose place is unknown.
     fn close_unplaced(&mut self, way: Way<'_>, ego: &Own, (track, path): (&Track, PathId)) {
+        self.hidden.lose();
         if let Some(from) = unplaced(way, path, track.class, ego.least) {
             self.unwatched
                 .close(track.number, path, Place::Unknown, from);

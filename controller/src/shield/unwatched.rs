@@ -153,6 +153,12 @@ impl Unwatched {
         holds
     }
 
+    /// Whether somebody with this number is remembered who has not left its zones.
+    pub(super) fn knows(&self, number: u16) -> bool {
+        let mut all = self.entries.iter();
+        all.any(|entry| entry.number == number && entry.from < FAR)
+    }
+
     /// Forgets whoever `stays` is false for.
     pub(super) fn retain(&mut self, stays: impl Fn(&Entry) -> bool) {
         self.entries.retain(stays);

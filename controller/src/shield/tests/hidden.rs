@@ -218,3 +218,51 @@ fn what_is_said_of_the_sight_is_checked() {
     assert!(said(1, f32::NAN, 15.0).starts_with("the sight of path 1 from NaN m on: "));
     assert!(said(1, 20.0, 0.0).starts_with("0 m/s out of sight on path 1: "));
 }
+
+/// Whether one that appears near the edge of sight counts as one who was out of sight, and so leaves the plan as it is, if
+/// somebody was on its path at the call before, whose state was refused or whose number has been forgotten.
+fn emerges(refused: bool, forgotten: bool) -> bool {
+    let site = crossing();
+    let errs = WORST.to_builder().position_error(0.5).speed_error(1.0);
+    let mut run = Run::new(&site, errs.build().unwrap());
+    let mut call = |number, state: State| {
+        run.millis += 100;
+        let now = Instant::from_millis(run.millis);
+        let (path, from, speed) = (PathId::new(1), 33.0, 3.0);
+        let sight = Sight { path, from, speed };
+        run.shield.set_sight(now, &[sight]).unwrap();
+        let mut tracks = std::vec::Vec::new();
+        if state[1].is_nan() || state[0] > 0.0 {
+            let mut seen = track(&site, 1, [33.1, state[1]]);
+            seen.number = number;
+            tracks.push(seen);
+        }
+        let seen = Observation {
+            ego: ego(&site, [20.0, 0.0]),
+            tracks: &tracks,
+        };
+        run.shield.filter(now, &seen, 0.0);
+        if forgotten {
+            run.shield.forget(9);
+        }
+        run.shield
+            .tracks
+            .iter()
+            .any(|it| it.news == super::super::other::News::Emerged)
+    };
+    call(9, [0.0, 0.0]);
+    call(9, [0.0, 0.0]);
+    if refused {
+        call(9, [33.1, f32::NAN]);
+    } else if forgotten {
+        call(9, [33.1, 3.0]);
+    }
+    call(1, [33.1, 3.0])
+}
+
+#[test]
+fn only_who_was_out_of_sight_comes_from_there() {
+    assert!(emerges(false, false));
+    assert!(!emerges(true, false), "it was in sight, and refused");
+    assert!(!emerges(false, true), "it was in sight, by another number");
+}

@@ -1,6 +1,7 @@
 //! What survives from one call to the next: plans, tracks that are missing or new, times that are wrong.
 
 use super::*;
+use crate::kinematics::{self, advance};
 
 /// An ego that is committed to clear the crossing: it can no longer stop before it.
 fn committed<R: Rules>(run: &mut Run<'_, R>) -> Plan {
@@ -531,4 +532,40 @@ fn what_is_left_of_the_jitter_is_counted_from_twice_of_it() {
     let room = run.decide([20.5, 5.0], &[], 0.0).headroom.period.unwrap();
     assert!((room.left - 0.015_001).abs() < 1e-6, "{room:?}");
     assert!((room.share - 0.75).abs() < 1e-3, "{room:?}");
+}
+
+/// How many egos, of those with a plan when the contract is replaced, end up in the zone of one that stands there.
+fn overruns(replaced: bool) -> u32 {
+    const DELAY: usize = 10;
+    let before = WORST.to_builder().latency(1.0).build().unwrap();
+    let weaker = before.to_builder().ego_acceleration(0.5).ego_go(0.5);
+    let weaker = weaker.build().unwrap();
+    let site = crossing();
+    let stands = zone(&site, 1);
+    let mut overruns = 0;
+    for start in 0..150_u8 {
+        let mut run = Run::new(&site, before);
+        let mut own = [0.2 * f32::from(start), 5.0];
+        let mut flying = std::collections::VecDeque::from([0.0; DELAY]);
+        let mut planned = true;
+        for call in 0..120 {
+            if call == 12 && replaced {
+                run.shield.set_contract(weaker).unwrap();
+            }
+            let decision = run.decide(own, &[(1, [stands.other.from + 1.0, 0.0])], 3.0);
+            planned &= call > 12 || decision.plan.is_some();
+            flying.push_back(decision.acceleration);
+            let [s, v] = own;
+            let next = advance(kinematics::State { s, v }, flying.pop_front().unwrap());
+            own = [next.s, next.v];
+        }
+        let inside = own[0] > stands.ego.from && own[0] < stands.ego.to;
+        overruns += u32::from(planned && inside);
+    }
+    overruns
+}
+
+#[test]
+fn commands_in_flight_lead_to_what_the_former_contract_says() {
+    assert_eq!([overruns(false), overruns(true)], [0, 0]);
 }
