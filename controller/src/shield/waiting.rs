@@ -301,7 +301,7 @@ mod tests {
         assert_eq!(after(|c| c.jitter = 0.01), 4 + 1 + 1);
         assert_eq!(after(|c| c.latency = 0.25), 6);
         assert_eq!(after(|c| c.latency = 0.0), 4);
-        // Half of `go` is nobody's: twice as many.
+        // With that gain error only half of `go` is certain: twice as many periods.
         assert_eq!(after(|c| (c.speed_error, c.ego.gain) = (0.5, 0.5)), 4 + 7);
         // It lets its brakes go for 0.2 s · 3 / √2 / 3 m/s², after a response of 0.3 s.
         assert_eq!(after(|c| c.ego.lag = 0.2), 4 + 4);

@@ -188,7 +188,7 @@ fn table(rows: &[Summary]) -> String {
         let Some(first) = block.first() else { continue };
         let left_out = match first.left_out {
             0 => String::new(),
-            n => format!("; {n} left out: their way is no path of a junction"),
+            n => format!("; left out, for a way that is no path of a junction: {n}"),
         };
         text += &format!(
             "{}: {} in {}, behind the shield{left_out}\n{table}\n\n",
