@@ -60,8 +60,8 @@ own=cede-$version-$target library=libcede-$version-$target
 mkdir -p ".build/packing/$own/completions" ".build/packing/$library/"{lib,include}
 
 echo "== crates"
-cargo package --locked --quiet "${dirty[@]}" "${publishable[@]/#/--package=}"
-for name in "${publishable[@]}"; do cp "target/package/$name-$version.crate" "$folder"; done
+package --quiet "${dirty[@]}"
+for name in "${publishable[@]}"; do cp ".build/package/package/$name-$version.crate" "$folder"; done
 
 echo "== program"
 cargo build --locked --release --quiet --package cede
