@@ -425,4 +425,17 @@ mod tests {
         near(slowing(5.0, -1.0, 6.0, 0.5), -2.0);
         near(slowing(5.0, 5.0, 5.0, 0.5), 1.3149);
     }
+
+    /// The lengths have these bits.
+    #[test]
+    fn a_piece_of_half_as_much_again_is_not_longer() {
+        let piece = |to| Piece {
+            start: Point::origin(),
+            end: Point::new(to, 0.0),
+            from: 0.0,
+            to,
+        };
+        assert!(!long(&piece(3.0), &piece(2.0)));
+        assert!(long(&piece(3.1), &piece(2.0)));
+    }
 }

@@ -211,6 +211,10 @@ fn granted(
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use crate::instant::Instant;
+    use crate::junction::zone::Span;
+    use crate::junction::{ConflictKind, PathId};
+    use crate::shield::bounds::Bounds;
     use crate::shield::rules::Sound;
 
     /// These hazards and no others.
@@ -254,5 +258,63 @@ pub(super) mod tests {
         let beyond: std::vec::Vec<_> = hazards.iter().map(|hazard| hazard.rest_beyond).collect();
         assert_eq!(beyond[..2], [1.0, 2.0]);
         assert_eq!(beyond.last(), Some(&FAR));
+    }
+
+    /// A zone that both enter and leave at these arc lengths.
+    fn zone(ego: [f32; 2], other: [f32; 2], kind: ConflictKind) -> Zone {
+        let span = |[from, to]: [f32; 2]| Span { from, to };
+        let lead = [ego[0] - other[1], ego[1] - other[0]];
+        Zone {
+            ego: span(ego),
+            other: span(other),
+            lead: span(lead),
+            kind,
+        }
+    }
+
+    /// Where the ego, at `ego`, waits before the last of `zones` for one at `other`.
+    fn waits(zones: &[Zone], ego: f32, other: f32) -> f32 {
+        let mut conflict = RouteConflict::NONE;
+        for (place, zone) in conflict.zones.iter_mut().zip(zones) {
+            *place = Some(*zone);
+        }
+        let own = Own {
+            s: ego,
+            speed: 0.0,
+            least: ego,
+        };
+        let bounds = Bounds {
+            s: Span {
+                from: other,
+                to: other,
+            },
+            speed: Span { from: 0.0, to: 0.0 },
+        };
+        let other = Other::at(1, PathId::new(1), 0.0, bounds, Instant::from_millis(1));
+        clear_of::<Sound>(&conflict, zones.last().unwrap(), &own, &other)
+    }
+
+    #[test]
+    fn the_ego_waits_before_the_first_of_the_crossings_without_a_gap_that_are_open() {
+        let crossing = |ego, other| zone(ego, other, ConflictKind::Crossing);
+        let first = crossing([10.0, 14.0], [30.0, 34.0]);
+        let second = crossing([14.0, 18.0], [20.0, 24.0]);
+        let third = crossing([18.0, 22.0], [10.0, 14.0]);
+        assert_eq!(waits(&[first, second], 5.0, 0.0), 10.0);
+        assert_eq!(waits(&[first, second, third], 5.0, 0.0), 10.0);
+        // A gap.
+        let beyond = crossing([14.1, 18.0], [20.0, 24.0]);
+        assert_eq!(waits(&[first, beyond], 5.0, 0.0), 14.1);
+        assert_eq!(waits(&[first, beyond, third], 5.0, 0.0), 14.1);
+        // What the ego or the other has left.
+        assert_eq!(waits(&[first, second], 13.9, 0.0), 10.0);
+        assert_eq!(waits(&[first, second], 14.0, 0.0), 14.0);
+        assert_eq!(waits(&[first, second], 5.0, 33.9), 10.0);
+        assert_eq!(waits(&[first, second], 5.0, 34.0), 14.0);
+        // A lane is no crossing, be it the one before or the last.
+        let lane = zone([10.0, 14.0], [30.0, 34.0], ConflictKind::Merging);
+        assert_eq!(waits(&[lane, second], 5.0, 0.0), 14.0);
+        let last = zone([14.0, 18.0], [20.0, 24.0], ConflictKind::Merging);
+        assert_eq!(waits(&[first, last], 5.0, 0.0), 14.0);
     }
 }

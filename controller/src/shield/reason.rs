@@ -80,3 +80,89 @@ fn hidden_reason(contract: &Contract, path: PathId, passage: Passage, clears: f3
         clears,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::junction::zone::FAR;
+    use crate::shield::actuation::Inherited;
+    use crate::shield::hazard::Hazard;
+    use crate::shield::hazards::tests::just;
+    use crate::shield::own::Own;
+    use crate::shield::rules::Sound;
+
+    const CONTRACT: Contract = Contract::WORST_CASE;
+
+    /// Why an ego at 6 m/s, which keeps its speed, does not pass this in a zone from 5 to 15 m ahead, and when it would have
+    /// cleared it.
+    fn reason(passage: Passage) -> (Reason, f32, f32) {
+        let own = Own {
+            s: 0.0,
+            speed: 6.0,
+            least: 0.0,
+        };
+        let inherited = Inherited::all(&CONTRACT, [0.0; 2]);
+        let hazard = Hazard {
+            who: Who::Watched {
+                number: 7,
+                place: 0,
+            },
+            zone: 0,
+            suspect: false,
+            yields: false,
+            target: 15.0,
+            limit: 5.0,
+            rest: 5.0,
+            rest_beyond: FAR,
+            passage,
+        };
+        let scene = Scene {
+            ego: &own,
+            hazards: &mut just(&[hazard]),
+            inherited: &inherited,
+            most: CONTRACT.ego.go,
+        };
+        let departure = Sound::departure(&CONTRACT, 6.0, &inherited, 0.0);
+        let (clears, speed) = margin::clearing(&CONTRACT, departure.least, 15.0);
+        (scene.reason::<Sound>(&CONTRACT, 0.0), clears, speed)
+    }
+
+    #[test]
+    fn a_reason_has_the_numbers_of_the_passage_that_is_missed() {
+        let (why, clears, speed) = reason(Passage::Ahead {
+            gap: 4.0,
+            speed: 8.0,
+            arrives: FAR,
+        });
+        let rush = Sound::rush(&CONTRACT, 8.0, clears);
+        assert!(rush.distance > 8.0);
+        let entry = Reason::Entry {
+            other: 7,
+            gap: 4.0 - rush.distance,
+            needs: Sound::safe_gap(&CONTRACT, rush.speed, speed),
+        };
+        assert_eq!(why, entry);
+        let (distance, speed) = (9.0, 8.0);
+        let (why, clears, _) = reason(Passage::Before { distance, speed });
+        let arrives = margin::arrival(&CONTRACT, distance, speed);
+        let arrival = |arrives, clears| Reason::Arrival {
+            other: 7,
+            arrives,
+            clears,
+        };
+        assert_eq!(why, arrival(arrives, clears));
+        let (distance, speed) = (3.0, 2.0);
+        let (why, clears, _) = reason(Passage::Walks { distance, speed });
+        assert_eq!(why, arrival(1.5, clears));
+        let (why, ..) = reason(Passage::Never);
+        let Reason::Stop {
+            other: 7,
+            available: 5.0,
+            needs,
+        } = why
+        else {
+            panic!("{why:?}");
+        };
+        assert!(needs > 5.0);
+    }
+}

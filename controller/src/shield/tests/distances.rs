@@ -291,3 +291,64 @@ fn what_is_found_counts_if_it_is_as_near_as_what_the_plan_does_next() {
         assert_eq!(is, nearer, "{found} for {wanted}");
     }
 }
+
+/// From where the ego is sensed to its line, less what sensors may err by.
+#[test]
+fn the_line_is_as_near_as_it_may_be() {
+    let mut builder = Site::builder();
+    builder.tolerance(0.0);
+    for route in [east(), north()] {
+        builder.path(&route, Class::Car, Footprint::PAPER).unwrap();
+    }
+    builder.line(EGO, 40.0).unwrap();
+    let site = builder.build().unwrap();
+    let (contract, way) = (errs(WORST), site.way(EGO).unwrap());
+    let mut hazards = hazards(&site, &contract, [20.0, 1.0], &[(1, [20.0, 5.0], 0)]);
+    let own = Own::new(&contract, &ego(&site, [20.0, 1.0]), -FAR);
+    let mut scene = scene::Scene {
+        ego: &own,
+        hazards: &mut hazards,
+        inherited: &Inherited::all(&contract, [0.0; 2]),
+        most: 2.5,
+    };
+    scene.wait_at_line::<Sound>(&contract, way, false);
+    near(hazards.nearest_rest(), 40.0 - 20.0 - 0.3);
+}
+
+/// The ego, 14 m long, is on both crossings at once of one that crosses its path, turns, and crosses it again.
+#[test]
+fn the_ego_waits_before_both_crossings_unless_it_is_in_the_first() {
+    // A half circle of 12 m across.
+    let turn = [0_u8, 1, 2, 3, 4, 5].map(|i| {
+        let (sin, cos) = (f32::from(i) * core::f32::consts::PI / 5.0).sin_cos();
+        Point::new(6.0 - 6.0 * cos, 30.0 + 6.0 * sin)
+    });
+    let ends = [0.0, 12.0].map(|x| Point::new(x, -60.0));
+    let back = [ends[0]].into_iter().chain(turn).chain([ends[1]]);
+    let back = Route::<8>::new(back).unwrap();
+    let lorry = Footprint {
+        length: 14.0,
+        width: 2.5,
+    };
+    let mut builder = Site::builder();
+    builder.tolerance(0.0);
+    builder.path(&east(), Class::Lorry, lorry).unwrap();
+    (builder.path(&back, Class::Car, Footprint::PAPER)).unwrap();
+    let site = builder.build().unwrap();
+    let way = site.way(EGO).unwrap();
+    let conflict = way.conflict(PathId::new(1)).unwrap();
+    let zones: std::vec::Vec<_> = conflict.zones().copied().collect();
+    let [first, second] = zones[..] else {
+        panic!("{zones:?}");
+    };
+    assert!(first.ego.from < second.ego.from && second.ego.from < first.ego.to);
+    let rest = |own: f32| {
+        let hazards = hazards(&site, &errs(WORST), [own, 0.0], &[(1, [20.0, 5.0], 0)]);
+        let found = hazards.iter().find(|hazard| hazard.zone == 1).unwrap();
+        near(found.limit, second.ego.from - own - 0.3);
+        found.rest
+    };
+    near(rest(20.0), first.ego.from - 20.0 - 0.3);
+    let inside = first.ego.from + 0.5;
+    near(rest(inside), second.ego.from - inside - 0.3);
+}
