@@ -233,6 +233,7 @@ fn blind<R: Rules>() -> (usize, std::vec::Vec<f32>) {
         };
         let decision = run.observe(nothing, &[], 0.0);
         assert!(matches!(decision.cause, Cause::Fallback(Fault::Input(_))));
+        assert!(decision.plan.is_some());
         decision.acceleration
     });
     (periods, commands.collect())
