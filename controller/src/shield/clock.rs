@@ -105,6 +105,9 @@ mod tests {
         assert_eq!(at(5400), next(300_000, 3, false));
         assert_eq!(at(5430), next(30_000, 0, false));
         assert_eq!(at(5500), next(70_000, 1, false));
+        // The grid is rounded to.
+        assert_eq!(at(5560), next(60_000, 1, false));
+        assert_eq!(at(5640), next(80_000, 0, false));
     }
 
     #[test]
