@@ -118,6 +118,27 @@ fn nobody_appears_in_anothers_way() {
     }
 }
 
+/// A record may begin so near that a plan of somebody who drives would not be safe any more.
+#[test]
+fn nobody_appears_whom_a_plan_does_not_bear() {
+    let settings = Settings {
+        contract: Contract::WORST_CASE,
+        ..settings(1.0, Kind::Profile)
+    };
+    for tenths in 30..90 {
+        let north = std::f64::consts::FRAC_PI_2;
+        let tracks = vec![
+            track(0, 0.0, 0.0),
+            track_from(1, 0.1 * f64::from(tenths), north, -24.0),
+        ];
+        let outcome = run(&of(tracks), &settings);
+        assert_eq!(outcome.collisions, [], "{tenths}");
+        for ride in &outcome.rides {
+            assert_eq!(ride.unplanned, 0, "{tenths} {ride:?}");
+        }
+    }
+}
+
 /// A way that comes back to itself is no path of a junction.
 #[test]
 fn whose_way_comes_back_to_itself_is_left_out_alone() {

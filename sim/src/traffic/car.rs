@@ -31,17 +31,19 @@ impl<'t> Car<'t> {
         }
     }
 
+    /// Where it appears.
+    pub(super) fn first(&self) -> Option<State> {
+        let first = self.vehicle.record.first()?;
+        Some(State {
+            s: first.s,
+            v: first.v,
+        })
+    }
+
     /// It enters the site.
     pub(super) fn appear(&mut self) {
-        match self.vehicle.record.first() {
-            Some(first) => {
-                self.state = Some(State {
-                    s: first.s,
-                    v: first.v,
-                });
-            }
-            None => self.gone = true,
-        }
+        self.state = self.first();
+        self.gone = self.state.is_none();
     }
 
     /// Its record has begun, and it has not entered yet.

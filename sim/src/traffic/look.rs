@@ -88,12 +88,8 @@ fn in_way(own: &Car<'_>, other: &Car<'_>) -> Option<(Obstacle, f32)> {
 /// them.
 pub(super) fn has_room(cars: &[Car<'_>], index: usize, step: u32) -> bool {
     let entering = &cars[index];
-    let Some(first) = entering.vehicle.record.first() else {
+    let Some(first) = entering.first() else {
         return true;
-    };
-    let first = State {
-        s: first.s,
-        v: first.v,
     };
     let displaced = |car: &&Car<'_>| car.is_there() && (car.driven || car.is_late(step));
     let mut others = cars.iter().filter(displaced);

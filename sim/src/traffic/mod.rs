@@ -150,14 +150,27 @@ impl World<'_> {
         outcome
     }
 
-    /// Whoever is due enters, as soon as there is room for it.
+    /// Whoever is due enters, as soon as there is room for it, and nobody's plan counts on that it does not.
     fn appear(&mut self) {
         let step = self.step;
         for index in 0..self.cars.len() {
-            if self.cars[index].is_due(step) && look::has_room(&self.cars, index, step) {
+            if self.cars[index].is_due(step)
+                && look::has_room(&self.cars, index, step)
+                && self.is_borne(index)
+            {
                 self.cars[index].appear();
             }
         }
+    }
+
+    /// Whether all who are driven have a safe plan, too, if car `newcomer` enters.
+    fn is_borne(&self, newcomer: usize) -> bool {
+        (0..self.seats.len())
+            .filter(|&ego| self.cars[ego].driven && self.cars[ego].is_there())
+            .all(|ego| {
+                let seat = self.seats[ego].as_ref();
+                seat.is_none_or(|seat| seat.bears(&self.cars, [ego, newcomer], self.step))
+            })
     }
 
     /// The acceleration (m/s²) of `index` for the step that begins.

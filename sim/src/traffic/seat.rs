@@ -5,9 +5,10 @@ use super::car::Car;
 use super::obstacle::Obstacle;
 use crate::driver::idm::follow;
 use crate::meeting::{instant, path, sensed};
+use cede_controller::kinematics::State;
 use cede_controller::{
-    Approach, Class, ConflictKind, Decision, Drive, Junction, JunctionBuilder, Observation, Part,
-    PathId, RouteConflict, Shield, Track,
+    Approach, Class, ConflictKind, Decision, Drive, Instant, Junction, JunctionBuilder,
+    Observation, Part, PathId, RouteConflict, Shield, Track,
 };
 use cede_data::{Participant, Traffic};
 
@@ -138,9 +139,39 @@ pub(super) struct Seat<'t> {
     seen: Vec<bool>,
 }
 
+#[derive(Clone)]
 enum Driver<'t> {
     Cede(Box<Approach<'t, 't>>),
     Profile(Box<Shield<'t>>),
+}
+
+impl Driver<'_> {
+    fn ready(&mut self, now: Instant, observation: &Observation<'_>) -> bool {
+        match self {
+            Self::Cede(approach) => approach.ready(now, observation).is_ok(),
+            Self::Profile(shield) => shield.ready(now, observation).is_ok(),
+        }
+    }
+
+    /// The decision of one that is to accelerate at `most` (m/s²) at most.
+    fn decide(&mut self, now: Instant, observation: &Observation<'_>, most: f32) -> Decision {
+        match self {
+            Self::Cede(approach) => approach.decide_up_to(now, observation, most),
+            Self::Profile(shield) => {
+                let (ego, response) = (observation.ego, shield.contract().response());
+                let profile = shield.way().profile();
+                let allowed = profile.acceleration(ego.s, ego.speed, response);
+                shield.filter(now, observation, most.min(allowed))
+            }
+        }
+    }
+
+    fn forget(&mut self, number: u16) {
+        match self {
+            Self::Cede(approach) => approach.forget(number),
+            Self::Profile(shield) => shield.forget(number),
+        }
+    }
 }
 
 impl<'t> Seat<'t> {
@@ -171,57 +202,76 @@ impl<'t> Seat<'t> {
     ) -> Option<Decision> {
         let (own, now) = (&cars[ego], instant(step));
         let tracks = self.tracks(cars);
+        self.forget_all_but(&tracks);
         let observation = Observation {
             ego: sensed(&own.vehicle.route, own.state()),
             tracks: &tracks,
         };
         let (speed, wanted) = (own.state().v, self.crossing.wanted);
-        let (gap, ahead) = leader.map_or((f32::INFINITY, 0.0), |it| (it.gap, it.speed));
-        let most = follow(speed, wanted, gap, ahead);
+        let (gap, leads) = leader.map_or((f32::INFINITY, 0.0), |it| (it.gap, it.speed));
         let driver = self.driver.as_mut()?;
         if !self.ready {
             // Who comes to a place where two ways meet finds there who has come before; nobody is handed over inside.
-            if self.crossing.is_inside(own.state().s, &tracks) {
-                return None;
-            }
-            let ready = match driver {
-                Driver::Cede(approach) => approach.ready(now, &observation),
-                Driver::Profile(shield) => shield.ready(now, &observation),
-            };
-            self.ready = ready.is_ok();
-            if !self.ready {
-                return None;
-            }
+            self.ready =
+                !self.crossing.is_inside(own.state().s, &tracks) && driver.ready(now, &observation);
         }
-        Some(match driver {
-            Driver::Cede(approach) => approach.decide_up_to(now, &observation, most),
-            Driver::Profile(shield) => {
-                let response = shield.contract().response();
-                let profile = shield.way().profile();
-                let allowed = profile.acceleration(observation.ego.s, speed, response);
-                shield.filter(now, &observation, most.min(allowed))
-            }
-        })
+        (self.ready).then(|| driver.decide(now, &observation, follow(speed, wanted, gap, leads)))
     }
 
-    /// Everybody who is there, by the number of its path; who has left is forgotten.
-    fn tracks(&mut self, cars: &[Car<'_>]) -> Vec<Track> {
-        let mut tracks = Vec::new();
-        let others = self.crossing.others.iter().zip(&mut self.seen).zip(1..);
-        for ((&index, seen), number) in others {
-            let car = &cars[index];
-            if car.is_there() {
-                let vehicle = sensed(&car.vehicle.route, car.state());
-                tracks.push(Track::on(number, PathId::new(number as u8), vehicle));
-            } else if *seen {
-                match &mut self.driver {
-                    Some(Driver::Cede(approach)) => approach.forget(number),
-                    Some(Driver::Profile(shield)) => shield.forget(number),
-                    None => {}
-                }
-            }
-            *seen = car.is_there();
-        }
-        tracks
+    /// Whether the plan of car `ego`, if there is one, is still safe when car `newcomer` appears (U3): in a recording vehicles
+    /// appear nearer than they would come into sight.
+    pub(super) fn bears(&self, cars: &[Car<'_>], [ego, newcomer]: [usize; 2], step: u32) -> bool {
+        let Some(driver) = self.driver.as_ref().filter(|_| self.ready) else {
+            return true;
+        };
+        let mut paths = self.crossing.others.iter().zip(1..);
+        let Some((_, number)) = paths.find(|&(&index, _)| index == newcomer) else {
+            return true;
+        };
+        let has_plan = |tracks: &[Track]| {
+            let observation = Observation {
+                ego: sensed(&cars[ego].vehicle.route, cars[ego].state()),
+                tracks,
+            };
+            let decision = driver.clone().decide(instant(step), &observation, 0.0);
+            decision.plan.is_some()
+        };
+        let mut tracks = self.tracks(cars);
+        let had = has_plan(&tracks);
+        tracks.extend(
+            cars[newcomer]
+                .first()
+                .map(|first| track(&cars[newcomer], number, first)),
+        );
+        !had || has_plan(&tracks)
     }
+
+    /// Everybody who is there, by the number of its path.
+    fn tracks(&self, cars: &[Car<'_>]) -> Vec<Track> {
+        let others = self.crossing.others.iter().map(|&index| &cars[index]);
+        let there = others.zip(1..).filter(|(car, _)| car.is_there());
+        there
+            .map(|(car, number)| track(car, number, car.state()))
+            .collect()
+    }
+
+    /// Who has left is forgotten.
+    fn forget_all_but(&mut self, tracks: &[Track]) {
+        for (seen, number) in self.seen.iter_mut().zip(1..) {
+            let is = tracks.iter().any(|track| track.number == number);
+            if *seen
+                && !is
+                && let Some(driver) = &mut self.driver
+            {
+                driver.forget(number);
+            }
+            *seen = is;
+        }
+    }
+}
+
+/// `car` as others see it, at this place.
+fn track(car: &Car<'_>, number: u16, state: State) -> Track {
+    let vehicle = sensed(&car.vehicle.route, state);
+    Track::on(number, PathId::new(number as u8), vehicle)
 }
