@@ -50,6 +50,9 @@ BEFORE, BEYOND = 300.0, 100.0
 LATERAL = 2.6
 """Lateral acceleration (m/s²) that a curve's speed is chosen for."""
 
+EXCESS = 0.1
+"""Speed (m/s) by which SUMO's drivers exceed a limit at most: by rounding alone."""
+
 SLACK = 0.5
 """Metres along a crossing by which a person may be ahead of its track."""
 
@@ -107,6 +110,8 @@ class Movement:
     """Its change with the place of the front bumper."""
     curvature: list[float] = field(repr=False)
     """Curvature (1/m) of the path."""
+    allowed: list[float] = field(repr=False)
+    """Speed (m/s) of the centre that limits and bends allow, there and ahead."""
 
     def place(self, front: float) -> tuple[float, float]:
         """Arc length (m) of the centre, and its change with that of the front bumper."""
@@ -200,6 +205,9 @@ class Network:
         self.sites = [site for site in sites if site is not None]
         if not self.sites:
             raise Error(f"{self.file}: no junction of a type that is driven: {', '.join(TYPES)}")
+        allowed = (movement.allowed for site in self.sites for movement in site.movements)
+        self.fastest = max(map(max, allowed)) + EXCESS
+        """Speed (m/s) that nobody exceeds at these junctions."""
         self.entering: dict[str, Site] = {}
         self.using: dict[str, list[Site]] = {}
         for site in self.sites:
@@ -225,7 +233,7 @@ class Network:
                     f"{self.file}: junction {node.getID()}: lane {lane} leads {count} ways: "
                     f"at most {MOST_CANDIDATES} are followed; build the network without turnarounds"
                 )
-        builder = Junction.builder(TOLERANCE, LATERAL)
+        builder = Junction.builder(TOLERANCE)
         crossed = self._crossed.get(node.getID(), ())
         short = BEFORE_CROSSING if crossed else BEFORE_LINE
         ways = [_Way.along(self._lanes(node, c), self.length, short) for c in connections]
@@ -233,7 +241,7 @@ class Network:
         paths = []
         for connection, way in zip(connections, ways):
             control = CONTROLS.get(connection.getState(), "free")
-            rules = {"line": way.line, "control": control, "limits": way.limits}
+            rules = {"line": way.line, "control": control}
             try:
                 paths.append(builder.path(_simplified(way.centre), **size, **rules))
             except Error as wrong:
@@ -245,7 +253,8 @@ class Network:
             junction = builder.build()
         except Error as wrong:
             raise Error(f"{self.file}: junction {node.getID()}: {wrong}") from None
-        movements = [_movement(*each) for each in zip(paths, driven, connections, ways)]
+        each = zip(paths, driven, connections, ways)
+        movements = [_movement(*one, self.braking) for one in each]
         site = Site(node.getID(), node.getType(), junction, movements, {}, crossings)
         for movement in movements:
             for stretch in movement.stretches:
@@ -291,7 +300,7 @@ class Network:
         return Error(f"{self.file}: junction {node.getID()}, connection {ends}: {what}")
 
 
-def _movement(path: int, driven: int, connection: Any, way: _Way) -> Movement:
+def _movement(path: int, driven: int, connection: Any, way: _Way, braking: float) -> Movement:
     curvature = way.curvature()
     return Movement(
         path=path,
@@ -308,7 +317,19 @@ def _movement(path: int, driven: int, connection: Any, way: _Way) -> Movement:
         arc=way.arc.tolist(),
         rate=np.maximum(np.gradient(way.arc, _GRID), 0.1).tolist(),
         curvature=curvature.tolist(),
+        allowed=_allowed(way, curvature, braking).tolist(),
     )
+
+
+def _allowed(way: _Way, curvature: np.ndarray, braking: float) -> np.ndarray:
+    """The speed (m/s) that limits and bends allow, and to come down to what they allow ahead."""
+    starts, speeds = zip(*way.limits)
+    limits = np.array(speeds)[np.searchsorted(starts, way.arc, side="right") - 1]
+    allowed = np.minimum(limits, np.sqrt(LATERAL / np.maximum(curvature, 1e-6)))
+    for i in range(len(allowed) - 2, -1, -1):
+        down = math.sqrt(allowed[i + 1] ** 2 + 2 * braking * (way.arc[i + 1] - way.arc[i]))
+        allowed[i] = min(allowed[i], down)
+    return allowed
 
 
 def _read(file: str) -> Any:
@@ -331,16 +352,24 @@ class _Right:
     first: Any
     priority: str
 
+    @property
+    def among(self) -> str:
+        """When it counts among driven vehicles."""
+        return "signed" if self.priority == "signed" else "first-come"
+
 
 def _tell_rights(
     builder: Any, node: Any, connections: list[Any], paths: tuple[list[int], list[int]]
 ) -> None:
     """Tell the right of way of every two connections, whose paths are SUMO's and the driven ones.
 
-    Driven vehicles go in the order of their arrival where no sign says who goes first. SUMO's
-    drivers know no such order, and at some junctions they give way to nobody.
+    Driven vehicles go in the order of their arrival where no sign says who goes first, as between
+    two minor roads. SUMO's drivers know no such order, and at some junctions they give way to
+    nobody.
     """
     sumo, driven = paths
+    major = {c.getFrom() for c in connections if c.getState() == "M"}
+    minor = [c.getFrom() not in major for c in connections]
     for second, later in enumerate(connections):
         for first, earlier in enumerate(connections[:second]):
             if earlier.getFromLane() is later.getFromLane():
@@ -348,7 +377,7 @@ def _tell_rights(
                 continue
             right = _right(node, earlier, later)
             one, two = (first, second) if right.first is earlier else (second, first)
-            among = "signed" if right.priority == "signed" else "first-come"
+            among = "first-come" if minor[one] and minor[two] else right.among
             builder.right_of_way(driven[one], driven[two], among)
             if node.getType() in HEEDLESS:
                 builder.right_of_way(sumo[one], driven[two], "signed")
