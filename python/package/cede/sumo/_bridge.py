@@ -565,7 +565,9 @@ class Bridge:
         stop = _stopping(car.speed, movement.line - car.s, braking)
         if car.tight and movement.direction != "straight" and car.s <= movement.line:
             # Where it cannot stop any more, to go is better than to go late.
-            wanted = min(wanted, stop) if stop > -self._contract.ego_braking else wanted
+            room = movement.line + NOSE - car.s
+            if car.speed**2 < 2 * room * self._contract.ego_braking:
+                wanted = min(wanted, stop)
         if self._lets_pass(car):
             wanted = min(wanted, stop)
         leader = self.sumo.vehicle.getLeader(car.name, 50.0)

@@ -352,24 +352,16 @@ class _Right:
     first: Any
     priority: str
 
-    @property
-    def among(self) -> str:
-        """When it counts among driven vehicles."""
-        return "signed" if self.priority == "signed" else "first-come"
-
 
 def _tell_rights(
     builder: Any, node: Any, connections: list[Any], paths: tuple[list[int], list[int]]
 ) -> None:
     """Tell the right of way of every two connections, whose paths are SUMO's and the driven ones.
 
-    Driven vehicles go in the order of their arrival where no sign says who goes first, as between
-    two minor roads. SUMO's drivers know no such order, and at some junctions they give way to
-    nobody.
+    Driven vehicles go in the order of their arrival where no sign says who goes first. SUMO's
+    drivers know no such order, and at some junctions they give way to nobody.
     """
     sumo, driven = paths
-    major = {c.getFrom() for c in connections if c.getState() == "M"}
-    minor = [c.getFrom() not in major for c in connections]
     for second, later in enumerate(connections):
         for first, earlier in enumerate(connections[:second]):
             if earlier.getFromLane() is later.getFromLane():
@@ -377,7 +369,7 @@ def _tell_rights(
                 continue
             right = _right(node, earlier, later)
             one, two = (first, second) if right.first is earlier else (second, first)
-            among = "first-come" if minor[one] and minor[two] else right.among
+            among = "signed" if right.priority == "signed" else "first-come"
             builder.right_of_way(driven[one], driven[two], among)
             if node.getType() in HEEDLESS:
                 builder.right_of_way(sumo[one], driven[two], "signed")
