@@ -22,9 +22,10 @@ SEEDS = (0, 1)
 
 def main(kinds):
     print(
-        "| junction | demand | driver | share | arrived | delay | stuck | collisions | no plan | µs |"
+        "| junction | demand | driver | share driven | runs | arrived | delay, s | stuck "
+        "| collisions (of driven) | share without a plan | lateral, m/s² | µs |"
     )
-    print("|---|---|---|---|---|---|---|---|---|---|")
+    print("|---|---|---|---|---|---|---|---|---|---|---|---|")
     for kind in kinds:
         with tempfile.TemporaryDirectory() as folder:
             network = Network(netconvert(pathlib.Path(folder), kind))
@@ -50,12 +51,13 @@ def row(network, kind, demand, driver, share):
         return f"{sum(known) / len(known):.3g}" if known else ""
 
     arrived = f"{total('arrived')} of {total('demanded')}"
-    counts = f"{total('stuck')} | {total('collisions')}"
-    means = f"{mean('no_plan_share')} | {mean('us_per_decision')}"
+    counts = f"{total('stuck')} | {total('collisions')} ({total('ego_collisions')})"
+    lateral = max(run["lateral_acceleration_max"] for run in runs)
+    means = f"{mean('no_plan_share')} | {lateral:.1f} | {mean('us_per_decision')}"
     delay = mean("mean_delay_s")
     print(
-        f"| {kind} | {demand:.0f} | {driver} | {share:.0%} | {arrived} | {delay} | {counts} "
-        f"| {means} |",
+        f"| `{kind}` | {demand:.0f} | {driver} | {share:.0%} | {len(runs)} | {arrived} | {delay} "
+        f"| {counts} | {means} |",
         flush=True,
     )
 

@@ -61,7 +61,7 @@ def _policy(args: argparse.Namespace) -> Policy | None:
 
 
 def _contract(name: str | None) -> Contract | None:
-    if name is None:
+    if name is None or name == "sumo":
         return None
     return Contract.load(name) if name.endswith(".toml") else contract_named(name)
 
@@ -103,8 +103,7 @@ def _parser() -> argparse.ArgumentParser:
         "--contract",
         metavar="NAME|FILE.toml",
         help="sumo, or a named contract of `cede`, or a file [default: sumo, which is all-way-stop "
-        "with the brakes of SUMO's vehicles; worst-case beside SUMO's drivers at unregulated "
-        "junctions]",
+        "with the brakes of SUMO's vehicles and the network's speed limits]",
     )
     option("--shield", choices=("on", "off"), default="on")
     option(

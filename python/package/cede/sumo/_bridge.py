@@ -33,11 +33,18 @@ STANDSTILL = 2.5
 """Metres to the leader at rest, SUMO's `minGap`, which SUMO's gaps leave out."""
 LIVELY, FREE = 3.0, 14.0
 """Acceleration (m/s²) from rest, and the speed (m/s) at which it ends, with nothing ahead."""
+SMOOTH = 0.5
+"""Seconds in which a vehicle gets as fast as it may be: less makes it jerk."""
 SETTING_OFF = 4.0
 """Speed (m/s), at least, at which a vehicle is expected to cross a junction."""
-SPARE = 6.0
+SPARE, SHRINKS = 6.0, 2.0
 """Metres by which a plan passes whoever comes, without which a vehicle that turns does not enter:
-in the bend it is slower than the plan, which then gets tighter."""
+in the bend it is slower than the plan, which then gets tighter; and for each metre to its line as
+many more: on its way there it slows down, and the plan gets tighter already."""
+CREEPING, NOSE = 3.0, 2.0
+"""Speed (m/s) and metres beyond its line up to which a vehicle has not really set off."""
+FREE_WAY = 1e5
+"""Metres to spare that say that nobody is in the way."""
 ROOM = 2.0
 """Metres to the vehicle ahead beyond the junction, without which a vehicle waits before it."""
 _NOTHING = 0
@@ -201,6 +208,8 @@ class Bridge:
     def _loop(self) -> None:
         self.cars: dict[str, Car] = {}
         self.persons: dict[str, Person] = {}
+        fastest = self.network.fastest
+        self._contract = self.settings.contract or contract_named("sumo", fastest)
         self._random = random.Random(self.settings.seed)
         self._numbers = 0
         self._now = 0.0
@@ -496,13 +505,25 @@ class Bridge:
             else:
                 decision = car.shield.filter(self._now, ego, tracks, wanted)
             wanted = decision.acceleration
-            car.tight = bool(decision.plan) and decision.margin < SPARE
+            self._judge(car, decision)
+            if decision.no_plan:
+                # Nothing is certain any more: it leaves no faster than the bend lets it.
+                wanted = min(wanted, self._allowed(car))
             measures.shielded += decision.cause != "policy"
             measures.no_plan += decision.no_plan
             measures.breaches += decision.breach is not None
         elif car.approach is not None:
             wanted = min(wanted, car.approach.proposal(ego, tracks))
         self._command(car, max(0.0, ego.speed + wanted * self.settings.step))
+
+    @staticmethod
+    def _judge(car: Car, decision: Any) -> None:
+        """Note whether the plan has too little to spare; until another one goes, or it stands."""
+        if decision.plan:
+            short = max(0.0, car.movement.line - car.s)
+            car.tight = decision.margin < SPARE + SHRINKS * short
+        elif car.speed < STANDING or decision.margin > FREE_WAY:
+            car.tight = False
 
     def _command(self, car: Car, speed: float) -> None:
         """Have the centre of the vehicle as fast as this (m/s) at the end of the step."""
@@ -519,8 +540,7 @@ class Bridge:
 
     def _take_over(self, car: Car, ego: Any, tracks: list[Track]) -> bool:
         """Take control over, if there is a safe plan."""
-        contract = self.settings.contract or contract_named("sumo")
-        shield = Shield(car.site.junction, car.movement.driven, contract)
+        shield = Shield(car.site.junction, car.movement.driven, self._contract)
         if self.settings.shield:
             try:
                 shield.ready(self._now, ego, tracks)
@@ -529,7 +549,7 @@ class Bridge:
                 return False
         car.shield = shield
         if self.settings.driver == "cede":
-            drive = Drive(self.settings.policy, contract)
+            drive = Drive(self.settings.policy, self._contract)
             car.approach = drive.enter(car.site.junction, car.movement.driven)
         self.sumo.vehicle.setSpeedMode(car.name, _NOTHING)
         return True
@@ -537,24 +557,50 @@ class Bridge:
     def _profile(self, car: Car) -> float:
         """The acceleration (m/s²) of a plain profile: limits, curves, stop signs, the leader."""
         movement, braking = car.movement, self.network.braking
-        allowed = car.site.junction.allowed_acceleration(
-            movement.driven, car.s, car.speed * car.rate, self.settings.step
-        )
-        wanted = min(LIVELY * (1.0 - (car.speed / FREE) ** 4), allowed)
+        wanted = min(LIVELY * (1.0 - (car.speed / FREE) ** 4), self._allowed(car))
         if not car.stopped:
             short = movement.line - car.s
             car.stopped = car.speed < STANDING and short < AT_LINE
             wanted = min(wanted, _stopping(car.speed, short - 0.2, braking))
+        stop = _stopping(car.speed, movement.line - car.s, braking)
         if car.tight and movement.direction != "straight" and car.s <= movement.line:
-            wanted = min(wanted, _stopping(car.speed, movement.line - car.s, braking))
+            # Where it cannot stop any more, to go is better than to go late.
+            room = movement.line + NOSE - car.s
+            if car.speed**2 < 2 * room * self._contract.ego_braking:
+                wanted = min(wanted, stop)
+        if self._lets_pass(car):
+            wanted = min(wanted, stop)
         leader = self.sumo.vehicle.getLeader(car.name, 50.0)
         other = self.cars.get(leader[0]) if leader else None
         # SUMO also names those who are about to merge: they are the shield's matter.
         if other is None or all(stretch.lane != other.lane for stretch in movement.stretches):
             return wanted
         if _blocks(car, other, leader[1]):
-            wanted = min(wanted, _stopping(car.speed, movement.line - car.s, braking))
+            wanted = min(wanted, stop)
         return min(wanted, self._behind(car, other, leader[1]))
+
+    def _lets_pass(self, car: Car) -> bool:
+        """Whether it hardly moves yet, and one of SUMO's drivers has set off across its way.
+
+        SUMO's drivers do not look at the right of way of a vehicle that stands.
+        """
+        if car.speed > CREEPING or not -AT_LINE < car.s - car.movement.line < NOSE:
+            return False
+        inside = (
+            other
+            for other in self.cars.values()
+            if other.shield is None and other.on_path and other.site is car.site
+            if other.speed >= STANDING and other.s > other.movement.line
+        )
+        return any(_crosses(car, other) for other in inside)
+
+    @staticmethod
+    def _allowed(car: Car) -> float:
+        """The acceleration (m/s²) that limits and bends allow, there and a little ahead."""
+        allowed, speed = car.movement.allowed, car.speed * car.rate
+        ahead = car.front + car.speed * SMOOTH
+        slowest = min(car.movement.at(allowed, front) for front in (car.front, ahead))
+        return (slowest - speed) / SMOOTH
 
     def _behind(self, car: Car, leader: Car, gap: float) -> float:
         """The intelligent driver model behind a leader."""
@@ -572,6 +618,14 @@ def _stands_in_entry(car: Car, site: Site) -> bool:
     if car.site is not site or not car.on_path or car.speed >= STANDING:
         return False
     return car.front - car.length < car.movement.stretches[1].start <= car.front
+
+
+def _crosses(car: Car, other: Car) -> bool:
+    """Whether a zone that another has not left yet lies ahead of a vehicle."""
+    zones = car.site.junction.conflict(car.movement.driven, other.movement.path).zones
+    return any(
+        kind == "crossing" and car.s < ego[0] and other.s < theirs[1] for kind, ego, theirs in zones
+    )
 
 
 def _front(car: Car, stretch: Stretch) -> float:
@@ -597,19 +651,21 @@ def _stopping(speed: float, room: float, braking: float) -> float:
     return -needed if needed > 0.8 * braking else math.inf
 
 
-def contract_named(name: str) -> Contract:
+def contract_named(name: str, fastest: float | None = None) -> Contract:
     """A contract by its name, with the errors of a vehicle's place on its path here.
 
     SUMO moves a vehicle's front bumper along its lanes; where these bend, its centre is a little
     faster or slower than the front. `"sumo"` is an all-way stop's with the brakes of SUMO's own
     vehicles: it can follow as near as they do. Its plans clear a junction at an acceleration that
     leaves bends comfortable. A vehicle arrives where the second one of a queue has not been yet, so
-    that others see it arrive.
+    that others see it arrive. Nobody is faster than `fastest` (m/s), where that is known.
     """
     errors = {"position_error": 0.05, "speed_error": 0.1}
     if name == "sumo":
         queues = {"distance": 5.0, "patience": 30}
         drives = {"ego_go": 2.0, "ego_braking": 4.5, "ego_emergency": 8.0}
+        if fastest is not None:
+            drives |= {"ego_max_speed": fastest, "other_max_speed": fastest}
         return Contract("all-way-stop", **drives, precedence=queues, **errors)
     known = Contract(name)
     return Contract(name, **{field: max(getattr(known, field), errors[field]) for field in errors})

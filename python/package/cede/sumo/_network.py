@@ -50,6 +50,9 @@ BEFORE, BEYOND = 300.0, 100.0
 LATERAL = 2.6
 """Lateral acceleration (m/s²) that a curve's speed is chosen for."""
 
+EXCESS = 0.1
+"""Speed (m/s) by which SUMO's drivers exceed a limit at most: by rounding alone."""
+
 SLACK = 0.5
 """Metres along a crossing by which a person may be ahead of its track."""
 
@@ -107,6 +110,8 @@ class Movement:
     """Its change with the place of the front bumper."""
     curvature: list[float] = field(repr=False)
     """Curvature (1/m) of the path."""
+    allowed: list[float] = field(repr=False)
+    """Speed (m/s) of the centre that limits and bends allow, there and ahead."""
 
     def place(self, front: float) -> tuple[float, float]:
         """Arc length (m) of the centre, and its change with that of the front bumper."""
@@ -200,6 +205,9 @@ class Network:
         self.sites = [site for site in sites if site is not None]
         if not self.sites:
             raise Error(f"{self.file}: no junction of a type that is driven: {', '.join(TYPES)}")
+        allowed = (movement.allowed for site in self.sites for movement in site.movements)
+        self.fastest = max(map(max, allowed)) + EXCESS
+        """Speed (m/s) that nobody exceeds at these junctions."""
         self.entering: dict[str, Site] = {}
         self.using: dict[str, list[Site]] = {}
         for site in self.sites:
@@ -225,7 +233,7 @@ class Network:
                     f"{self.file}: junction {node.getID()}: lane {lane} leads {count} ways: "
                     f"at most {MOST_CANDIDATES} are followed; build the network without turnarounds"
                 )
-        builder = Junction.builder(TOLERANCE, LATERAL)
+        builder = Junction.builder(TOLERANCE)
         crossed = self._crossed.get(node.getID(), ())
         short = BEFORE_CROSSING if crossed else BEFORE_LINE
         ways = [_Way.along(self._lanes(node, c), self.length, short) for c in connections]
@@ -233,7 +241,7 @@ class Network:
         paths = []
         for connection, way in zip(connections, ways):
             control = CONTROLS.get(connection.getState(), "free")
-            rules = {"line": way.line, "control": control, "limits": way.limits}
+            rules = {"line": way.line, "control": control}
             try:
                 paths.append(builder.path(_simplified(way.centre), **size, **rules))
             except Error as wrong:
@@ -245,7 +253,8 @@ class Network:
             junction = builder.build()
         except Error as wrong:
             raise Error(f"{self.file}: junction {node.getID()}: {wrong}") from None
-        movements = [_movement(*each) for each in zip(paths, driven, connections, ways)]
+        each = zip(paths, driven, connections, ways)
+        movements = [_movement(*one, self.braking) for one in each]
         site = Site(node.getID(), node.getType(), junction, movements, {}, crossings)
         for movement in movements:
             for stretch in movement.stretches:
@@ -291,7 +300,7 @@ class Network:
         return Error(f"{self.file}: junction {node.getID()}, connection {ends}: {what}")
 
 
-def _movement(path: int, driven: int, connection: Any, way: _Way) -> Movement:
+def _movement(path: int, driven: int, connection: Any, way: _Way, braking: float) -> Movement:
     curvature = way.curvature()
     return Movement(
         path=path,
@@ -308,7 +317,19 @@ def _movement(path: int, driven: int, connection: Any, way: _Way) -> Movement:
         arc=way.arc.tolist(),
         rate=np.maximum(np.gradient(way.arc, _GRID), 0.1).tolist(),
         curvature=curvature.tolist(),
+        allowed=_allowed(way, curvature, braking).tolist(),
     )
+
+
+def _allowed(way: _Way, curvature: np.ndarray, braking: float) -> np.ndarray:
+    """The speed (m/s) that limits and bends allow, and to come down to what they allow ahead."""
+    starts, speeds = zip(*way.limits)
+    limits = np.array(speeds)[np.searchsorted(starts, way.arc, side="right") - 1]
+    allowed = np.minimum(limits, np.sqrt(LATERAL / np.maximum(curvature, 1e-6)))
+    for i in range(len(allowed) - 2, -1, -1):
+        down = math.sqrt(allowed[i + 1] ** 2 + 2 * braking * (way.arc[i + 1] - way.arc[i]))
+        allowed[i] = min(allowed[i], down)
+    return allowed
 
 
 def _read(file: str) -> Any:
