@@ -63,6 +63,7 @@ impl<const N: usize, R: Rules> Shield<'_, N, R> {
             }
             let its = other.sighting(contract);
             let there = arrive(&mut other.pair.other, other.path, its);
+            // The ego, as it was in the same periods.
             let mut own = before;
             for missed in counted.clone() {
                 own.stay(contract, rest(missed, mine.rest), here);

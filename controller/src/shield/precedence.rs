@@ -169,6 +169,7 @@ impl PairMemory {
         if R::ends(perhaps, surely, begins, patience) {
             self.turn = Turn::Past;
         }
+        // No turn begins for two that have not surely rested: in a period without a call, there is no more to do.
         if surely < begins {
             return;
         }
