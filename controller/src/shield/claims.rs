@@ -5,10 +5,10 @@ use super::clock::Tick;
 use super::own::Own;
 use super::precedence::{self, Right};
 use super::rules::Rules;
-use super::waiting::{RestState, Sighting};
+use super::waiting::{Arrived, Presence, RestState, Sighting};
 use crate::instant::Instant;
+use crate::junction::RightOfWay;
 use crate::junction::zone::FAR;
-use crate::junction::{PathId, RightOfWay, Way};
 
 /// Periods since the last call above which nothing is known any more of who rested.
 const LOST: u16 = 16;
@@ -25,55 +25,51 @@ impl<const N: usize, R: Rules> Shield<'_, N, R> {
             Tick::Next { periods, .. } => periods,
             Tick::Repeated | Tick::Backwards => 0,
         };
-        let mine = Sighting::of_ego(contract, ego);
-        let unseen = |sighting: Sighting| Sighting {
-            rest: RestState::Perhaps,
-            ..sighting
+        // A call that is not on time says nothing of how long somebody has moved or rested.
+        let on_time = !matches!(tick, Tick::Next { on_time: false, .. });
+        // Of the periods in which there was no call, nothing is known.
+        let rest = |missed, seen| match missed {
+            0 if on_time => seen,
+            _ => RestState::Perhaps,
+        };
+        let counted = (0..periods.min(LOST)).rev();
+        let way = self.way;
+        let arrive = |presence: &mut Presence, path, seen: Sighting| {
+            if periods == 0 {
+                presence.note_again(seen.rest);
+                return Arrived::Perhaps;
+            }
+            let line = way.path(path).map_or(FAR, |path| path.line());
+            presence.arrive((contract, rule), line, seen.s, now)
         };
         if periods > LOST {
             self.presence.forget();
             self.tracks.iter_mut().for_each(|other| other.pair.forget());
         }
-        if periods == 0 {
-            self.presence.note_again(mine.rest);
-            for other in self.tracks.iter_mut() {
-                other.pair.other.note_again(other.sighting(contract).rest);
-            }
-        }
-        // A call that is not on time says nothing of how long somebody has moved or rested.
-        let on_time = !matches!(tick, Tick::Next { on_time: false, .. });
-        let line = |path: PathId| self.way.path(path).map_or(FAR, |path| path.line());
-        // Of the periods in which there was no call, nothing is known.
-        for missed in (0..periods.min(LOST)).rev() {
-            let seen = |sighting: Sighting| {
-                if missed == 0 && on_time {
-                    sighting
-                } else {
-                    unseen(sighting)
-                }
-            };
-            let own = line(self.way.ego());
-            self.presence.note(contract, rule, own, seen(mine), now);
-            for other in self.tracks.iter_mut() {
-                let its = seen(other.sighting(contract));
-                other
-                    .pair
-                    .other
-                    .note(contract, rule, line(other.path), its, now);
-                let Some(mut right) = right(self.way, other.path) else {
-                    continue;
-                };
-                if ego.is_none() {
-                    right.in_turns = RightOfWay::Unsettled;
-                }
-                other.pair.pass::<R>(contract, rule, right, &self.presence);
-            }
+        let mine = Sighting::of_ego(contract, ego);
+        let here = arrive(&mut self.presence, way.ego(), mine);
+        let before = self.presence;
+        for missed in counted.clone() {
+            self.presence.stay(contract, rest(missed, mine.rest), here);
         }
         for other in self.tracks.iter_mut() {
-            let Some(conflict) = self.way.conflict(other.path) else {
+            let Some(conflict) = way.conflict(other.path) else {
                 continue;
             };
-            let right = Right::of(conflict, self.way, other.path);
+            let right = Right::of(conflict, way, other.path);
+            let mut turns = right;
+            if ego.is_none() {
+                turns.in_turns = RightOfWay::Unsettled;
+            }
+            let its = other.sighting(contract);
+            let there = arrive(&mut other.pair.other, other.path, its);
+            // The ego, as it was in the same periods.
+            let mut own = before;
+            for missed in counted.clone() {
+                own.stay(contract, rest(missed, mine.rest), here);
+                (other.pair.other).stay(contract, rest(missed, its.rest), there);
+                other.pair.pass::<R>(contract, rule, turns, &own);
+            }
             other.claims = other.pair.claims(contract, rule, right, &self.presence);
             if let Some(ego) = ego.filter(|_| other.claims != precedence::ALL) {
                 other
@@ -83,9 +79,4 @@ impl<const N: usize, R: Rules> Shield<'_, N, R> {
             }
         }
     }
-}
-
-/// Which of the ego and an other on `path` goes first; nothing, if they do not meet.
-fn right(way: Way<'_>, path: PathId) -> Option<Right> {
-    Some(Right::of(way.conflict(path)?, way, path))
 }

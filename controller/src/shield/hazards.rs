@@ -146,11 +146,13 @@ impl Hazards {
         // 8 others, 8 edges of sight and 4 pedestrians of 3 zones each, and what is closed: `Shield` and `MAX_ZONES` see to it that there are no more.
         let _ = self.sorted.push(hazard);
         for i in (1..self.sorted.len()).rev() {
-            if let Some([before, after]) = self.sorted.get_mut(i - 1..=i)
-                && R::sooner(after.target, before.target)
-            {
-                core::mem::swap(before, after);
+            let Some([before, after]) = self.sorted.get_mut(i - 1..=i) else {
+                break;
+            };
+            if !R::sooner(hazard.target, before.target) {
+                break;
             }
+            (*after, *before) = (*before, hazard);
         }
     }
 

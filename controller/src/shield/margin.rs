@@ -101,28 +101,59 @@ pub fn departure<R: Real>(
     }
 }
 
-/// The time (s) from now at which the ego has certainly gone `target` metres, if it goes from
-/// `least` on, and the least speed (m/s) that it then has.
-#[inline(never)] // Once in flash.
+/// How an ego goes at least, by its contract: the same for every target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Going<R> {
+    /// The acceleration (m/s²) that is certain.
+    acceleration: R,
+    /// Up to this speed (m/s): [`unlimited`].
+    cap: R,
+    /// By how much (m/s²) a faster one may slow down to it; none, if nothing is inexact.
+    fade: Option<R>,
+    /// A speed below 0 is the time, times `acceleration`, for which it may still stand.
+    lags: bool,
+    /// The first period and the response (s), before which it may not go.
+    late: [R; 2],
+}
+
+impl<R: Real> Going<R> {
+    /// How an ego of this contract goes.
+    #[inline(never)] // Once in flash.
+    #[must_use]
+    pub fn of(contract: &Contract) -> Self {
+        Self {
+            acceleration: weakest(contract, R::of(contract.ego.go)),
+            cap: unlimited(contract),
+            fade: (!contract.is_exact()).then(|| fade(contract)),
+            lags: contract.ego.lag != 0.0,
+            late: [contract.shortest_period(), contract.response()].map(R::of),
+        }
+    }
+
+    /// The time (s) from now at which the ego has certainly gone `target` metres, if it goes from
+    /// `least` on, and the least speed (m/s) that it then has.
+    #[inline(never)] // Once in flash.
+    #[must_use]
+    pub fn clearing(&self, least: Reach<R>, target: R) -> (R, R) {
+        let (cap, [period, response]) = (self.cap, self.late);
+        let least = self.fade.map_or(least, |fade| {
+            // It is no slower than `cap` on the way, which therefore takes no longer.
+            let longest = (target - least.distance).max(R::of(0.0)) / cap;
+            least.fading(cap, fade * longest)
+        });
+        let (time, speed) = if self.lags {
+            least.until_from_rest(target, self.acceleration, cap)
+        } else {
+            least.until(target, self.acceleration, cap)
+        };
+        (time + period + response, speed)
+    }
+}
+
+/// [`Going::clearing`] of a single target.
+#[must_use]
 pub fn clearing<R: Real>(contract: &Contract, least: Reach<R>, target: R) -> (R, R) {
-    let go = weakest(contract, R::of(contract.ego.go));
-    let cap = unlimited(contract);
-    let least = if contract.is_exact() {
-        least
-    } else {
-        // It is no slower than `cap` on the way, which therefore takes no longer.
-        let longest = (target - least.distance).max(R::of(0.0)) / cap;
-        least.fading(cap, fade::<R>(contract) * longest)
-    };
-    let (time, speed) = if contract.ego.lag == 0.0 {
-        least.until(target, go, cap)
-    } else {
-        least.until_from_rest(target, go, cap)
-    };
-    (
-        time + R::of(contract.shortest_period()) + R::of(contract.response()),
-        speed,
-    )
+    Going::of(contract).clearing(least, target)
 }
 
 /// The least number of going periods after the first one with which the ego has gone for long enough

@@ -169,6 +169,10 @@ impl PairMemory {
         if R::ends(perhaps, surely, begins, patience) {
             self.turn = Turn::Past;
         }
+        // No turn begins for two that have not surely rested: in a period without a call, there is no more to do.
+        if surely < begins {
+            return;
+        }
         // An unknown rest is `u16::MAX`, so that the smaller one is the known one. One known rest is enough if there is an
         // order in turns. Without an order, who comes first is told from both.
         let counted = perhaps < u16::MAX

@@ -2,7 +2,7 @@
 
 use super::contract::Contract;
 use super::hazard::{Passage, Who};
-use super::margin;
+use super::margin::{self, Going};
 use super::rules::Rules;
 use super::scene::Scene;
 use super::verified::passage_margin;
@@ -20,11 +20,12 @@ impl Scene<'_> {
             available: 0.0,
             needs,
         };
+        let going = Going::of(contract);
         for hazard in self.hazards.iter() {
             if R::stops_short(contract, hazard.rest, needs) >= 0.0 {
                 continue;
             }
-            let (clears, ego_speed) = margin::clearing(contract, departure.least, hazard.target);
+            let (clears, ego_speed) = going.clearing(departure.least, hazard.target);
             let other = match hazard.who {
                 Who::Watched { number, .. } | Who::Unwatched(number) => number,
                 Who::Hidden(_) => 0,

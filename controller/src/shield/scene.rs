@@ -6,7 +6,7 @@ use super::contract::Contract;
 use super::decide::next;
 use super::hazard::{Hazard, Passage};
 use super::hazards::Hazards;
-use super::margin;
+use super::margin::Going;
 use super::own::Own;
 use super::rules::Rules;
 use super::tracks::Tracks;
@@ -58,7 +58,11 @@ impl<'s> Scene<'s> {
         let departure = R::departure(contract, self.ego.speed, self.inherited, command);
         // A part of the slack is for what rounding has taken since the plan was verified.
         let rounding = 0.2 * contract.slack;
-        move |hazard| R::keeps(spare::<R>(contract, hazard, &departure, R::tail(plan)) + rounding)
+        let going = Going::of(contract);
+        move |hazard| {
+            let motion = (&departure, &going);
+            R::keeps(spare::<R>(contract, hazard, motion, R::tail(plan)) + rounding)
+        }
     }
 
     /// Has the ego wait at its line, if the junction was told it. `goes`: the plan in force does not brake yet, and
@@ -92,8 +96,9 @@ impl<'s> Scene<'s> {
             Passage::Ahead { gap, .. } => gap > 0.0,
             Passage::Never => false,
         };
+        let going = Going::of(contract);
         let passes = |hazard: &Hazard| {
-            let (clears, speed) = margin::clearing(contract, departure.least, hazard.target);
+            let (clears, speed) = going.clearing(departure.least, hazard.target);
             passage_margin::<R>(contract, hazard, clears, speed) >= 0.0
         };
         let inside = |hazard: &Hazard| hazard.limit < -NOSE;

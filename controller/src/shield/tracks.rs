@@ -174,9 +174,12 @@ impl<const N: usize> Tracks<N> {
         let (contract, way) = context;
         let placed = |candidate| door::track(way, contract, track, candidate).is_ok();
         if newcomers && track.candidates().any(placed) {
-            self.watched.retain(|other| {
-                other.number != number || other.seen || track.may_be_on(other.path)
-            });
+            let stays =
+                |other: &Other| other.number != number || other.seen || track.may_be_on(other.path);
+            // As a rule all do, and none need be moved.
+            if !self.watched.iter().all(stays) {
+                self.watched.retain(stays);
+            }
             self.unwatched.retain(|entry| {
                 entry.number != number || entry.seen || track.may_be_on(entry.path)
             });

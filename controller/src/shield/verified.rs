@@ -3,7 +3,7 @@
 use super::contract::Contract;
 use super::hazard::{Hazard, Passage};
 use super::hazards::Hazards;
-use super::margin::{self, Departure};
+use super::margin::{self, Departure, Going};
 use super::rules::Rules;
 use crate::junction::zone::FAR;
 use crate::plan::Plan;
@@ -37,9 +37,10 @@ pub(crate) fn best<R: Rules>(
         margin: R::stops_short(contract, hazards.nearest_rest(), rest),
         passes: -FAR - FAR,
     };
+    let going = Going::of(contract);
     let mut passed = FAR;
     for hazard in hazards.iter() {
-        let (clears, speed) = margin::clearing(contract, departure.least, hazard.target);
+        let (clears, speed) = going.clearing(departure.least, hazard.target);
         passed = Real::min(passed, passage_margin::<R>(contract, hazard, clears, speed));
         // Whatever comes after it cannot mend a hazard that is not passed in time.
         if passed <= best.margin || clears > HORIZON {
@@ -68,7 +69,7 @@ pub(crate) fn best<R: Rules>(
 pub(crate) fn spare<R: Rules>(
     contract: &Contract,
     hazard: &Hazard,
-    departure: &Departure<f32>,
+    (departure, going): (&Departure<f32>, &Going<f32>),
     plan: Plan,
 ) -> f32 {
     let time = f32::from(plan.go) * contract.period;
@@ -78,7 +79,7 @@ pub(crate) fn spare<R: Rules>(
         R::rest(contract, departure.braking, 0.0)
     };
     let stops = R::stops_short(contract, hazard.limit, rest);
-    let (clears, speed) = margin::clearing(contract, departure.least, hazard.target);
+    let (clears, speed) = going.clearing(departure.least, hazard.target);
     if clears <= HORIZON && margin::periods(contract, clears) <= plan.go {
         Real::max(stops, passage_margin::<R>(contract, hazard, clears, speed))
     } else {
@@ -190,7 +191,12 @@ mod tests {
     fn a_plan_has_to_spare_what_it_stops_short_by_or_passes_by() {
         let spare = |go, target| {
             let hazard = hazard(target, 5.0, FREE);
-            spare::<Sound>(&WORST, &hazard, &DEPARTURE, Plan { go })
+            spare::<Sound>(
+                &WORST,
+                &hazard,
+                (&DEPARTURE, &Going::of(&WORST)),
+                Plan { go },
+            )
         };
         near(spare(23, 20.0), 79.71);
         near(spare(22, 20.0), -46.67);

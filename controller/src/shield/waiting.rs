@@ -89,7 +89,7 @@ pub struct Arrival {
 
 /// Whether a vehicle has arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Arrived {
+pub(super) enum Arrived {
     Not,
     Perhaps,
     Surely,
@@ -226,13 +226,29 @@ impl Presence {
         sighting: Sighting,
         now: Instant,
     ) {
-        let arrived = match sighting.s {
+        let arrived = self.arrive((contract, rule), line, sighting.s, now);
+        self.stay(contract, sighting.rest, arrived);
+    }
+
+    /// Notes that it is within `s` (m) at `now`, and whether it has arrived: for however many periods are noted then.
+    pub(super) fn arrive(
+        &mut self,
+        (contract, rule): (&Contract, Precedence),
+        line: f32,
+        s: Option<Span>,
+        now: Instant,
+    ) -> Arrived {
+        match s {
             Some(s) => self.arrival.note(contract, rule, line, s, now),
             None if self.arrival.by.is_some() => Arrived::Surely,
             None => Arrived::Perhaps,
-        };
+        }
+    }
+
+    /// Notes one more period of one that has `arrived`, or not.
+    pub(super) fn stay(&mut self, contract: &Contract, rest: RestState, arrived: Arrived) {
         let calls = calls_in_between(contract);
-        self.standstill.note(sighting.rest, arrived, calls);
+        self.standstill.note(rest, arrived, calls);
     }
 
     /// Notes what is sensed within a period that has been noted already.
