@@ -16,7 +16,12 @@ use crate::plan::Plan;
 impl<const N: usize, R: Rules> Shield<'_, N, R> {
     /// Yes to `proposal` (m/s²) if some plan is safe after it. Otherwise the nearest acceleration after which one is; otherwise
     /// the remembered plan; without one, braking, or leaving the zones in which the ego stands.
-    pub(super) fn decide(&mut self, scene: &Scene<'_>, now: Instant, proposal: f32) -> Decision {
+    pub(super) fn decide(
+        &mut self,
+        scene: &mut Scene<'_>,
+        now: Instant,
+        proposal: f32,
+    ) -> Decision {
         let contract = self.contract;
         let wanted = allowed(&contract.ego, scene.most, proposal);
         let verdict = scene.check::<R>(&contract, wanted);

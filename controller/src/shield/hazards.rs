@@ -131,6 +131,15 @@ impl Hazards {
         self.look_beyond();
     }
 
+    /// Only those are left for which `inside` is false, and the ego may rest before them wherever it stops short of them.
+    pub(super) fn leave_out(&mut self, inside: impl Fn(&Hazard) -> bool) {
+        self.sorted.retain_mut(|hazard| {
+            hazard.rest = hazard.limit;
+            !inside(hazard)
+        });
+        self.look_beyond();
+    }
+
     pub(super) fn iter(&self) -> impl Iterator<Item = &Hazard> {
         self.sorted.iter()
     }

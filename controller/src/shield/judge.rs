@@ -55,7 +55,7 @@ impl<const N: usize, R: Rules> Shield<'_, N, R> {
             fault: findings.fault,
             unwatched: findings.closed.map(|closed| closed.number),
             headroom: findings.headroom,
-            ..self.decide(&scene, now, proposal)
+            ..self.decide(&mut scene, now, proposal)
         }
     }
 

@@ -11,7 +11,7 @@ use super::own::Own;
 use super::rules::Rules;
 use super::tracks::Tracks;
 use super::unwatched::Closed;
-use super::verified::{Verified, best, passage_margin, spare};
+use super::verified::{Verified, best, spare};
 use crate::junction::Way;
 use crate::plan::Plan;
 
@@ -85,31 +85,21 @@ impl<'s> Scene<'s> {
     }
 
     /// Whether an ego without a safe plan accelerates out of its zones instead of braking: it stands in zones, none
-    /// of the others may be in these, and it passes each zone ahead in time or stops before it.
-    pub(super) fn leaves<R: Rules>(&self, contract: &Contract) -> bool {
-        let go = allowed(&contract.ego, self.most, contract.ego.go);
-        let departure = R::departure(contract, self.ego.speed, self.inherited, go);
-        let rest = R::rest(contract, departure.braking, 0.0);
+    /// of the others may be in these, and from what is ahead some plan is safe. What is ahead is all that is left then.
+    pub(super) fn leaves<R: Rules>(&mut self, contract: &Contract) -> bool {
         let outside = |passage| match passage {
             Passage::Before { distance, .. } | Passage::Walks { distance, .. } => distance > 0.0,
             // It comes from behind.
             Passage::Ahead { gap, .. } => gap > 0.0,
             Passage::Never => false,
         };
-        let going = Going::of(contract);
-        let passes = |hazard: &Hazard| {
-            let (clears, speed) = going.clearing(departure.least, hazard.target);
-            passage_margin::<R>(contract, hazard, clears, speed) >= 0.0
-        };
         let inside = |hazard: &Hazard| hazard.limit < -NOSE;
-        let short = |hazard: &Hazard| R::stops_short(contract, hazard.limit, rest) >= 0.0;
-        self.hazards.iter().any(inside)
-            && self.hazards.iter().all(|hazard| {
-                if inside(hazard) {
-                    outside(hazard.passage)
-                } else {
-                    short(hazard) || passes(hazard)
-                }
-            })
+        let apart = |hazard: &Hazard| !inside(hazard) || outside(hazard.passage);
+        if !self.hazards.iter().any(inside) || !self.hazards.iter().all(apart) {
+            return false;
+        }
+        self.hazards.leave_out(inside);
+        let go = allowed(&contract.ego, self.most, contract.ego.go);
+        self.check::<R>(contract, go).margin >= 0.0
     }
 }

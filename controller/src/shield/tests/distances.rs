@@ -352,3 +352,50 @@ fn the_ego_waits_before_both_crossings_unless_it_is_in_the_first() {
     let inside = first.ego.from + 0.5;
     near(rest(inside), second.ego.from - inside - 0.3);
 }
+
+/// The ego, without a plan, stands in one zone; to be past the next one it has to be in the one after that.
+#[test]
+fn the_ego_leaves_its_zone_only_if_what_is_ahead_can_be_passed_or_stopped_before() {
+    let free = Passage::Before {
+        distance: 12.0,
+        speed: 5.0,
+    };
+    let hazard = |limit, target, passage| Hazard {
+        who: Who::Unwatched(0),
+        zone: 0,
+        suspect: false,
+        yields: false,
+        target,
+        limit,
+        rest: -9.0,
+        rest_beyond: FAR,
+        passage,
+    };
+    let own = Own {
+        s: 0.0,
+        speed: 1.0,
+        least: 0.0,
+    };
+    let leaves = |all: &[Hazard]| {
+        let mut scene = scene::Scene {
+            ego: &own,
+            hazards: &mut hazards::tests::just(all),
+            inherited: &Inherited::all(&WORST, [0.0; 2]),
+            most: 3.0,
+        };
+        scene.leaves::<Sound>(&WORST)
+    };
+    let inside = hazard(-2.0, 1.5, free);
+    let next = hazard(0.2, 2.0, free);
+    let occupied = |from: f32| hazard(from, from + 9.0, Passage::Never);
+    assert!(leaves(&[inside]));
+    assert!(leaves(&[inside, next]));
+    assert!(leaves(&[inside, occupied(1.0)]));
+    assert!(leaves(&[inside, next, occupied(12.0)]));
+    assert!(!leaves(&[inside, next, occupied(1.0)]));
+    assert!(!leaves(&[inside, occupied(0.2)]));
+    // Another is in its zone, too, or it stands in none, or its nose alone is in one.
+    assert!(!leaves(&[hazard(-2.0, 1.5, Passage::Never), next]));
+    assert!(!leaves(&[next]));
+    assert!(!leaves(&[hazard(-0.4, 1.5, free)]));
+}
