@@ -181,9 +181,10 @@ Proof.
   pose proof three as m3. unfold d in *.
   destruct (S_counts _ _ _ _ _ _ _ _ _ _ _ C a) as [short stretch].
   pose proof (begins_least m T G patient graceful n).
-  exists (g (a - 1)%nat).
+  exists (g (a - 1)%nat), (g a).
   pose proof (sure_of _ _ _ _ _ _ _ _ _ _ _ C (a - 1)%nat (stretch (a - 1)%nat ltac:(lia) ltac:(lia)) x) as [still _].
-  split; [exact still |].
+  pose proof (sure_of _ _ _ _ _ _ _ _ _ _ _ C a (stretch a ltac:(lia) ltac:(lia)) x) as [still' _].
+  split; [exact still |]. split; [exact still' |].
   pose proof (spacing k g gg (a - (G + 1 - m)) (G - m)) as [A _]. replace (a - (G + 1 - m) + (G - m))%nat with (a - 1)%nat in A by lia.
   pose proof (spacing k g gg (a - 1) 1) as [B _]. replace (a - 1 + 1)%nat with a in B by lia. simpl INR in B.
   pose proof (calls_ordered k g ok gg a last le).
@@ -261,8 +262,8 @@ Qed.
 Theorem precedence_is_safe_by_counts place x z y c l b since c' l' b' since' :
   (precedence_braking k <= ego_braking k)%R -> (0 <= r < unheld k)%R -> lane z = false -> lane y = false -> mirrored z y ->
   (forall w, motion (place w) (v w)) ->
-  watches k z (place x) (v x) (place (negb x)) (v (negb x)) (fun i => claim_p i \/ turn_p i <> None) p c l b since ->
-  watches k y (place (negb x)) (v (negb x)) (place x) (v x) (fun j => claim_q j \/ turn_q j <> None) q c' l' b' since' ->
+  watches k (judged k l c b z (fun i => claim_p i \/ turn_p i <> None) since) (place x) (v x) (place (negb x)) (v (negb x)) p c l b since ->
+  watches k (judged k l' c' b' y (fun j => claim_q j \/ turn_q j <> None) since') (place (negb x)) (v (negb x)) (place x) (v x) q c' l' b' since' ->
   forall u, (Rmax (p since) (q since') <= u)%R -> ~ inside z (place x u) (place (negb x) u).
 Proof.
   intros P6 rest lz ly mir moves W W'.
