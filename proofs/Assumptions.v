@@ -1,5 +1,5 @@
 (* What every theorem rests on: check.sh compares it with axioms.txt. *)
-Require Import Ego Shield Merge Pair Choice Limit Precedence Turns Order Yield Newer Lag Driven Controls Passage Turned.
+Require Import Ego Shield Merge Pair Choice Limit Precedence Turns Order Yield Lanes Newer Lag Driven Controls Passage Turned Ahead.
 Print Assumptions verified_plans_keep_apart.
 Print Assumptions at_most_one_comes_in_ahead.
 Print Assumptions shielded_vehicles_keep_apart.
@@ -19,8 +19,10 @@ Print Assumptions never_both_right_of_way.
 Print Assumptions never_both_equals.
 Print Assumptions never_both_sides.
 Print Assumptions precedence_is_safe_at_crossings.
+Print Assumptions precedence_is_safe_in_lanes.
 Print Assumptions one_claim_is_newer.
 Print Assumptions precedence_is_safe_by_counts.
+Print Assumptions precedence_is_safe_in_lanes_by_counts.
 Print Assumptions lag_is_a_delay.
 Print Assumptions plan_of_a_drivetrain_stops.
 Print Assumptions plan_of_a_drivetrain_clears.
@@ -33,3 +35,5 @@ Print Assumptions C2_acceleration_is_needed.
 Print Assumptions slack_is_needed.
 Print Assumptions A1_is_needed.
 Print Assumptions newer_is_needed.
+Print Assumptions P7_is_needed.
+Print Assumptions arrivals_are_needed.

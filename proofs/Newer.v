@@ -1,6 +1,6 @@
-(* Theorem 4 at crossings: of two claims one is newer, by the grace that Theorem 3 counts. *)
+(* Theorem 4 from what shields count: of two claims one is newer, by the grace that Theorem 3 counts. *)
 Require Import Reals Lra Lia Psatz Arith.
-Require Import Contract Shipped Motion Reach Statement Ego Precedence Turns Yield.
+Require Import Contract Shipped Motion Reach Statement Ego Precedence Turns Yield Lanes.
 
 Section Newer.
 Variables (k : contract) (v : bool -> R -> R) (arrival : bool -> R) (from r : R).
@@ -246,7 +246,7 @@ Hypothesis order : agree p q L_q owns_p owns_q.
 Hypothesis order' : agree q p L_p owns_q owns_p.
 Hypothesis by_arrival : forall i j, claim_p i -> ~ claim_q j.
 
-(* Of each two claims of two shields one is newer: the premise of Theorem 4 at crossings. *)
+(* Of each two claims of two shields one is newer: the premise of Theorem 4. *)
 Theorem one_claim_is_newer i j : claim_p i \/ turn_p i <> None -> claim_q j \/ turn_q j <> None ->
   (forall x, newer k r p i q j (v x)) \/ (forall x, newer k r q j p i (v x)).
 Proof.
@@ -258,18 +258,40 @@ Proof.
     apply (turn_and_claim p q sure_p ended_p sure_q ended_q S_p S_q L_p L_q owns_p owns_q turn_p turn_q claim_q i n j); auto.
 Qed.
 
-(* Theorem 4 at crossings, from what the shields count: P is the shield of vehicle x. *)
-Theorem precedence_is_safe_by_counts place x z y c l b since c' l' b' since' :
-  (precedence_braking k <= ego_braking k)%R -> (0 <= r < unheld k)%R -> lane z = false -> lane y = false -> mirrored z y ->
-  (forall w, motion (place w) (v w)) ->
-  watches k (judged k l c b z (fun i => claim_p i \/ turn_p i <> None) since) (place x) (v x) (place (negb x)) (v (negb x)) p c l b since ->
-  watches k (judged k l' c' b' y (fun j => claim_q j \/ turn_q j <> None) since') (place (negb x)) (v (negb x)) (place x) (v x) q c' l' b' since' ->
+(* Theorem 4 from what the shields count: P is the shield of vehicle x. *)
+Section Vehicles.
+Variables (place : bool -> R -> R) (x : bool) (z y : zone) (c c' : nat -> R) (l l' : log) (b b' : nat -> bounds) (since since' : nat).
+Hypothesis P6 : (precedence_braking k <= ego_braking k)%R.
+Hypothesis rest : (0 <= r < unheld k)%R.
+Hypothesis mir : mirrored z y.
+Hypothesis moves : forall w, motion (place w) (v w).
+Let claimed i := claim_p i \/ turn_p i <> None.
+Let claimed' j := claim_q j \/ turn_q j <> None.
+
+Lemma newer_order i j : claimed i -> claimed' j -> newer k r p i q j (v (negb x)) \/ newer k r q j p i (v x).
+Proof. intros ci cj. destruct (one_claim_is_newer i j ci cj) as [n | n]; [left | right]; apply n. Qed.
+
+Theorem precedence_is_safe_by_counts : lane z = false -> lane y = false ->
+  watches k (judged k l c b z claimed since) (place x) (v x) (place (negb x)) (v (negb x)) p c l b since ->
+  watches k (judged k l' c' b' y claimed' since') (place (negb x)) (v (negb x)) (place x) (v x) q c' l' b' since' ->
   forall u, (Rmax (p since) (q since') <= u)%R -> ~ inside z (place x u) (place (negb x) u).
 Proof.
-  intros P6 rest lz ly mir moves W W'.
-  apply (precedence_is_safe_at_crossings k r z y (place x) (v x) (place (negb x)) (v (negb x)) (fun i => claim_p i \/ turn_p i <> None)
-           p c l b since (fun j => claim_q j \/ turn_q j <> None) q c' l' b' since' ok P6 rest lz ly mir (moves x) (moves (negb x)) W W').
-  intros i j ci cj. destruct (one_claim_is_newer i j ci cj) as [n | n]; [left | right]; apply n.
+  intros lz ly W W'.
+  exact (precedence_is_safe_at_crossings k r z y (place x) (v x) (place (negb x)) (v (negb x)) claimed p c l b since claimed' q c' l' b'
+           since' ok P6 rest lz ly mir (moves x) (moves (negb x)) W W' newer_order).
 Qed.
+
+Theorem precedence_is_safe_in_lanes_by_counts mine theirs : lane z = true -> lane y = true ->
+  creeps_behind k r -> (lead_from z < s_in z - t_in z < lead_to z)%R ->
+  watches k (judged_in_lane k l c b z claimed since mine theirs) (place x) (v x) (place (negb x)) (v (negb x)) p c l b since ->
+  watches k (judged_in_lane k l' c' b' y claimed' since' theirs mine) (place (negb x)) (v (negb x)) (place x) (v x) q c' l' b' since' ->
+  (place x (Rmax (p since) (q since')) < s_in z)%R -> (place (negb x) (Rmax (p since) (q since')) < t_in z)%R ->
+  forall u, (Rmax (p since) (q since') <= u)%R -> ~ inside z (place x u) (place (negb x) u).
+Proof.
+  intros lz ly P7 corner W W'.
+  exact (precedence_is_safe_in_lanes k r z y (place x) (v x) (place (negb x)) (v (negb x)) mine theirs claimed p c l b since claimed' q
+           c' l' b' since' ok P6 rest P7 lz ly mir corner (moves x) (moves (negb x)) W W' newer_order).
+Qed.
+End Vehicles.
 End Two.
 End Newer.

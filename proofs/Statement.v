@@ -399,14 +399,20 @@ Definition creeps_behind (k : contract) (r : R) :=
   r * r / (ego_braking k + ego_braking k)
   <= r * follower_reaction k + r * r / (follower_braking k + follower_braking k) + slack k.
 
-(* Theorem 4 in lanes: two shielded vehicles with a rule of precedence that watch each other since before either was in the
-   lane never are in it together. None of C6, C7 and A9 is assumed. *)
-Definition Theorem4_lane := forall k r z y s v t w mine theirs claimed tau c l b since claimed' tau' c' l' b' since',
-  valid k -> precedence_braking k <= ego_braking k -> 0 <= r < unheld k -> creeps_behind k r ->
+(* Two shielded vehicles with a rule of precedence, which watch each other since before either was in the lane, never are in it
+   together. None of C6, C7 and A9 is assumed. P7 and how lanes are judged are arguments, so that Ahead.v can leave something
+   out. *)
+Definition Lane_guarantee (creeps : contract -> R -> Prop)
+    (judges : contract -> log -> (nat -> R) -> (nat -> bounds) -> zone -> (nat -> Prop) -> nat -> R -> R -> nat -> Prop) :=
+  forall k r z y s v t w mine theirs claimed tau c l b since claimed' tau' c' l' b' since',
+  valid k -> precedence_braking k <= ego_braking k -> 0 <= r < unheld k -> creeps k r ->
   lane z = true -> lane y = true -> mirrored z y -> lead_from z < s_in z - t_in z < lead_to z ->
   motion s v -> motion t w ->
-  watches k (judged_in_lane k l c b z claimed since mine theirs) s v t w tau c l b since ->
-  watches k (judged_in_lane k l' c' b' y claimed' since' theirs mine) t w s v tau' c' l' b' since' ->
+  watches k (judges k l c b z claimed since mine theirs) s v t w tau c l b since ->
+  watches k (judges k l' c' b' y claimed' since' theirs mine) t w s v tau' c' l' b' since' ->
   (forall i j, claimed i -> claimed' j -> newer k r tau i tau' j w \/ newer k r tau' j tau i v) ->
   s (Rmax (tau since) (tau' since')) < s_in z -> t (Rmax (tau since) (tau' since')) < t_in z ->
   forall u, Rmax (tau since) (tau' since') <= u -> ~ inside z (s u) (t u).
+
+(* Theorem 4 in lanes. *)
+Definition Theorem4_lane := Lane_guarantee creeps_behind judged_in_lane.
