@@ -154,15 +154,6 @@ Definition relies (i0 i : nat) :=
 Lemma seen_well i : (since <= i)%nat -> hold (b i) (t (tau i)) (w (tau i)).
 Proof. intros h. apply (known_holds k t w (tau since)); auto. Qed.
 
-(* A call that is before a moment, and whose next one is not. *)
-Lemma call_before u : tau since < u -> exists i, (since <= i)%nat /\ tau i < u <= tau (S i).
-Proof.
-  intros lo. destruct (call_after k tau ok grid since start_ since u) as [m M]. induction m as [| m IH].
-  - rewrite Nat.add_0_r in M. lra.
-  - destruct (Rle_dec u (tau (since + m)%nat)) as [early | late]; [apply IH, early |].
-    exists (since + m)%nat. split; [lia |]. replace (S (since + m)) with (since + S m)%nat by lia. lra.
-Qed.
-
 (* A plan that is verified by the rule of precedence is verified. *)
 Lemma in_lane_is_verified i : verified_in_lane k l c b z claimed theirs i -> verified_at k l c b z i.
 Proof.
@@ -176,7 +167,7 @@ Lemma outcome T u : tau since <= T <= u -> s T < s_in z ->
   (exists x, T <= x <= u /\ leads z s t x) \/ exists i0 i, relies i0 i /\ tau i <= u <= tau (S i).
 Proof.
   intros [T0 lo] out. pose proof (advances s v (tau since) T ms T0).
-  destruct (between_calls k tau ok grid since start_ u ltac:(lra)) as (i & hi & hu).
+  destruct (between_calls k tau ok grid since u ltac:(lra)) as (i & hi & hu).
   assert (D : judged k l c b z (fun _ => False) since i \/ exists i0, relies i0 i).
   { destruct (its_judgement _ _ _ _ _ _ _ _ _ _ _ W i hi) as [? | [? | [(i0 & h & ver & carried) | (i0 & h & op & carried)]]].
     - left; left; assumption.
@@ -223,7 +214,7 @@ Lemma comes_to_lead g : s (tau since) < s_in z -> tau since < g -> leads z s t g
     enters_first k l c b z claimed theirs i0 /\ s (tau i0) < s_in z /\
     safe_gap k (w g) (v g) + slack k <= s g - t g - lead_to z.
 Proof.
-  intros before lo [sg lg] first band out out'. destruct (call_before g lo) as (i & hi & [h1 h2]).
+  intros before lo [sg lg] first band out out'. destruct (call_before k tau since g (period_pos k ok) grid lo) as (i & hi & [h1 h2]).
   assert (none : forall x, tau since <= x < g -> s_in z <= s x -> safe_gap k (w x) (v x) <= s x - t x - lead_to z -> False).
   { intros x hx sx G. apply (first x hx). split; [exact sx |].
     destruct (safe_gap_least k (w x) (v x) ok (forwards t w mt x) (forwards s v ms x)) as [_ G0]. lra. }

@@ -55,7 +55,7 @@ Lemma shielded_outcome k z s v t w from u :
   exists x, from <= x <= u /\ s_in z <= s x /\ lead_to z <= s x - t x.
 Proof.
   intros ok la ms mt [(tau & c & l & b & since & -> & st & grid & obey & true & keeps & seen & judges)] before lo.
-  destruct (between_calls k tau ok grid since st u lo) as (i & hi & hu).
+  destruct (between_calls k tau ok grid since u lo) as (i & hi & hu).
   apply (judged_outcome k s v tau c l) with (b := b) (w := w) (claimed := fun _ => False) (i := i); auto.
 Qed.
 
@@ -129,7 +129,7 @@ Proof.
     exact (shielded_vehicles_keep_apart k z y s v t w from from' ok la ly mir corner ms mt sh sh' sb tb u lo ins).
   - destruct sh as [(tau & c & l & b & since & -> & st & grid & obey & true & keeps & seen & judges)].
     assert (lo' : tau since <= u) by (apply Rle_trans with (2 := lo); apply Rmax_l).
-    destruct (between_calls k tau ok grid since st u lo') as (i & hi & hu).
+    destruct (between_calls k tau ok grid since u lo') as (i & hi & hu).
     apply (judged_safe k s v tau c l) with (t := t) (w := w) (b := b) (z := z) (claimed := fun _ => False) (since := since)
       (i := i) (u := u); auto; try (rewrite la; discriminate).
     intros a d _ [].

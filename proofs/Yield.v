@@ -107,9 +107,9 @@ Proof.
   assert (lo1 : tau since <= u) by (apply Rle_trans with (2 := lo); apply Rmax_l).
   assert (lo2 : tau' since' <= u) by (apply Rle_trans with (2 := lo); apply Rmax_r).
   pose proof (inside_mirrored z y (s u) (t u) mir ins) as ins'.
-  destruct (between_calls k tau ok (its_calls _ _ _ _ _ _ _ _ _ _ _ W) since (its_start _ _ _ _ _ _ _ _ _ _ _ W) u lo1)
+  destruct (between_calls k tau ok (its_calls _ _ _ _ _ _ _ _ _ _ _ W) since u lo1)
     as (i & hi & hu).
-  destruct (between_calls k tau' ok (its_calls _ _ _ _ _ _ _ _ _ _ _ W') since' (its_start _ _ _ _ _ _ _ _ _ _ _ W') u lo2)
+  destruct (between_calls k tau' ok (its_calls _ _ _ _ _ _ _ _ _ _ _ W') since' u lo2)
     as (j & hj & hu').
   destruct (judged_alone k z s v t w claimed tau c l b since i u ok lz ms mt W hi hu) as [(i0 & r1 & open & carried) | ?];
     [| contradiction].
