@@ -1,5 +1,5 @@
 (* What every theorem rests on: check.sh compares it with axioms.txt. *)
-Require Import Ego Shield Merge Pair Choice Limit Precedence Turns Order Yield Lanes Newer Lag Driven Drivetrain Controls Passage Turned Ahead.
+Require Import Ego Shield Merge Pair Choice Limit Precedence Turns Order Yield Lanes Newer Lag Driven Drivetrain Controls Passage Turned Ahead Lagging.
 Print Assumptions verified_plans_keep_apart.
 Print Assumptions at_most_one_comes_in_ahead.
 Print Assumptions shielded_vehicles_keep_apart.
@@ -27,6 +27,7 @@ Print Assumptions lag_is_a_delay.
 Print Assumptions plan_of_a_drivetrain_stops.
 Print Assumptions plan_of_a_drivetrain_clears.
 Print Assumptions drivetrains_keep_apart.
+Print Assumptions a_drivetrain_can_meet_them.
 Print Assumptions lag_must_be_counted.
 Print Assumptions conditions_can_be_met.
 Print Assumptions a_passage_can_be_verified.

@@ -22,7 +22,8 @@ Record valid_driven (k : drivetrain) : Prop := {
   acceleration_pos : 0 <= ego_acceleration k;
   go_achieved : 0 < weakest k (ego_go k);
   go_commanded : ego_go k <= ego_acceleration k;
-  goes_at : 0 < unlimited_driven k <= unheld (bounding k)
+  emergency_no_weaker : ego_braking k <= ego_emergency k;
+  goes_at : 0 < unlimited_driven k
 }.
 
 Section Ego.
@@ -125,6 +126,27 @@ Definition Theorem1_driven := forall k theta s v x pull tau c ego t w b zones oc
 Lemma safe_gap_driven_is k w v : safe_gap_driven k w v = safe_gap (bounding k) w v.
 Proof. reflexivity. Qed.
 
+Lemma unlimited_below k : valid_driven k -> unlimited_driven k <= unheld (bounding k).
+Proof.
+  intros [_ (p0 & l0 & j0 & _ & lag0 & [g0 g1] & d0 & go0 & b0) a0 _ _ eb _].
+  assert (b1 : 0 <= ego_braking k).
+  { destruct (Rle_lt_dec 0 (ego_braking k)) as [? | neg]; [assumption | exfalso]. unfold weakest in b0.
+    assert (0 <= ego_gain k * Rmax (ego_braking k) (- ego_braking k)) by (apply Rmult_le_pos; [exact g0 | cases; lra]). lra. }
+  assert (share : forall p, 0 <= p -> 0 <= ego_gain k * Rmax p (- p) + ego_disturbance k).
+  { intros p p_. assert (0 <= ego_gain k * Rmax p (- p)) by (apply Rmult_le_pos; [exact g0 | cases; lra]). lra. }
+  pose proof (share (ego_acceleration k) a0). pose proof (share (ego_emergency k) ltac:(lra)).
+  assert (r0 : 0 <= response k) by (unfold response, switching; lra).
+  assert (f0 : 0 <= (ego_disturbance k + ego_disturbance k) / (1 - ego_gain k))
+    by (apply Rmult_le_pos; [lra | left; apply Rinv_0_lt_compat; lra]).
+  unfold unlimited_driven, unheld, bounding, switching, strongest. cbn [ego_max_speed speed_error ego_acceleration ego_braking
+    latency jitter ego_go period].
+  set (f := (ego_disturbance k + ego_disturbance k) / (1 - ego_gain k)) in *.
+  assert (0 <= f * period k) by (apply Rmult_le_pos; lra).
+  set (e := ego_emergency k + (ego_gain k * Rmax (ego_emergency k) (- ego_emergency k) + ego_disturbance k)) in *.
+  set (a := ego_acceleration k + (ego_gain k * Rmax (ego_acceleration k) (- ego_acceleration k) + ego_disturbance k)) in *.
+  assert (0 <= (a + e) * response k) by (apply Rmult_le_pos; [unfold a, e; lra | exact r0]). lra.
+Qed.
+
 (** * The ego brakes no harder than its commands lead to *)
 
 (* A lag does not make it brake harder than what is followed. *)
@@ -179,7 +201,7 @@ Proof. apply (ego_seen _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ holds_). Qed.
 Lemma what_driven i : (since <= i)%nat -> hold (b i) (t (tau i)) (w (tau i)).
 Proof. intros h. apply (known_holds B t w (tau since)); auto. apply (other_seen _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ holds_ i h). Qed.
 
-Lemma later i : (since <= i)%nat -> keeps_contract B w (tau i).
+Lemma keeps_since i : (since <= i)%nat -> keeps_contract B w (tau i).
 Proof. intros h. apply keeps_later with (tau since); [apply in_order, h | exact keeps]. Qed.
 
 Lemma hard_braking : 0 < strongest k (ego_braking k) <= other_braking k.
@@ -217,7 +239,7 @@ Qed.
 
 Lemma clears_later r target : 0 <= fst (clearing_driven k r target).
 Proof.
-  destruct (goes_at k ok) as [cap0 _]. pose proof (go_achieved k ok) as g0.
+  pose proof (goes_at k ok) as cap0. pose proof (go_achieved k ok) as g0.
   destruct (can_drive k ok) as (_ & l0 & j0 & sp & lag0 & _).
   set (f := fading r (unlimited_driven k) (fades k * (Rmax (target - distance r) 0 / unlimited_driven k))).
   set (u0 := until {| distance := distance f; speed := Rmax (speed f) 0 |} target (weakest k (ego_go k)) (unlimited_driven k)).
@@ -278,7 +300,7 @@ Proof.
   pose proof hard_braking. pose proof sure_braking.
   apply (stays_behind B (strongest k (ego_braking k)) (weakest k (ego_braking k)) s v t w T E (rests_driven k d n) gap W); auto; try lra.
   - apply H0.
-  - apply later, from.
+  - apply keeps_since, from.
   - intros p q ? ? ?. apply gentle_driven; [apply Rle_trans with T; [apply in_order, from |] |]; lra.
   - intros. apply place_of_rest. lra.
 Qed.
@@ -308,7 +330,7 @@ Proof.
   - apply sqrt_pos.
   - intros u hu le. destruct (slow u hu le) as [s1 s2]. split; [exact s1 |].
     apply Rle_trans with (1 := s2). apply Rmax_lub; [| apply Rmax_r].
-    apply Rle_trans with (2 := Rmax_l _ _). apply (goes_at k ok).
+    apply Rle_trans with (2 := Rmax_l _ _). apply unlimited_below, ok.
 Qed.
 
 Lemma passing_driven u : on_the_way -> passes_driven k ego b z (S j) d n -> T <= u <= E -> ~ inside z (s u) (t u).
@@ -320,7 +342,7 @@ Proof.
   set (clears := fst (clearing_driven k (least d) (s_out z - own_s o + 3 * position_error k))) in *.
   destruct (Rle_dec u (T + clears)) as [early | late].
   - pose proof (has_not_arrived B t w T u clears (t_in z - t_most (b (S j))) (w_most (b (S j))) (t_most (b (S j))) okB mt
-      (later _ from) lo early ltac:(lra) ltac:(lra) spare). lra.
+      (keeps_since _ from) lo early ltac:(lra) ltac:(lra) spare). lra.
   - specialize (gone ltac:(lra)). pose proof (advances s v (T + clears) u ms ltac:(lra)). lra.
 Qed.
 
@@ -356,7 +378,7 @@ Proof.
   specialize (G (slow y ltac:(lra) y3) spare).
   destruct (rushing_holds t w (t T) (other_acceleration B) (other_max_speed B) (start (w_most (b (S j)))) T y mt a0 y1)
     as [B1 B2].
-  { intros p q ? ? ?. apply (rushes B w T (later _ from) y); lra. }
+  { intros p q ? ? ?. apply (rushes B w T (keeps_since _ from) y); lra. }
   { cbn. lra. }
   { cbn. cases; lra. }
   rewrite <- rush_is in B1, B2.
