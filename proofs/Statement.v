@@ -355,14 +355,15 @@ Definition newer (k : contract) (r : R) (tau : nat -> R) (i : nat) (tau' : nat -
   exists x x', w x <= r /\ w x' <= r /\ tau' (S j) + switching k + r / ego_go k < x /\ x + switching k <= x' <= tau i.
 
 (* Theorem 4 at crossings: of two shielded vehicles that take each other for one that gives way (D13), neither checking the
-   zone itself then, not both are in it, if of each two claims one is newer. P6 is the bound on the rule's braking. C7 is not
+   zone itself then, not both are in it, if of each two claims by which it is opened one is newer. P6 is the bound on the rule's braking. C7 is not
    assumed. *)
 Definition Theorem4_crossing := forall k r z y s v t w claimed tau c l b since claimed' tau' c' l' b' since',
   valid k -> precedence_braking k <= ego_braking k -> 0 <= r < unheld k ->
   lane z = false -> lane y = false -> mirrored z y -> motion s v -> motion t w ->
   watches k (judged k l c b z claimed since) s v t w tau c l b since ->
   watches k (judged k l' c' b' y claimed' since') t w s v tau' c' l' b' since' ->
-  (forall i j, claimed i -> claimed' j -> newer k r tau i tau' j w \/ newer k r tau' j tau i v) ->
+  (forall i j, (since <= i)%nat -> opened_at k b z claimed i -> (since' <= j)%nat -> opened_at k b' y claimed' j ->
+    newer k r tau i tau' j w \/ newer k r tau' j tau i v) ->
   forall u, Rmax (tau since) (tau' since') <= u -> ~ inside z (s u) (t u).
 
 (* A lane, with a rule of precedence: ego and other arrive at the arc lengths [mine] and [theirs]. *)

@@ -116,7 +116,7 @@ Proof.
   destruct (judged_alone k y t w s v claimed' tau' c' l' b' since' j u ok ly mt ms W' hj hu') as [(j0 & r1' & open' & carried') | ?];
     [| contradiction].
   pose proof (its_start _ _ _ _ _ _ _ _ _ _ _ W). pose proof (its_start _ _ _ _ _ _ _ _ _ _ _ W').
-  destruct (order i0 j0 (proj1 open) (proj1 open')) as [n | n].
+  destruct (order i0 j0 (proj1 r1) open (proj1 r1') open') as [n | n].
   - apply (older_stays_out k r z (judged k l c b z claimed since) s v t w claimed tau c l b since tau' c' l' i0 i j0 j u); auto; try apply W'; try lra; lia.
   - apply (older_stays_out k r y (judged k l' c' b' y claimed' since') t w s v claimed' tau' c' l' b' since' tau c l j0 j i0 i u);
       auto; try apply W; try lra; lia.
