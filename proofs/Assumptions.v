@@ -21,6 +21,7 @@ Print Assumptions never_both_sides.
 Print Assumptions precedence_is_safe_at_crossings.
 Print Assumptions precedence_is_safe_in_lanes.
 Print Assumptions one_claim_is_newer.
+Print Assumptions held_is_newer.
 Print Assumptions precedence_is_safe_by_counts.
 Print Assumptions precedence_is_safe_in_lanes_by_counts.
 Print Assumptions lag_is_a_delay.
