@@ -11,7 +11,8 @@ Lemma known_holds k t w from u b :
   from <= u /\ hold b (t u) (w u).
 Proof.
   intros ok m keeps kn. pose proof (forwards t w m) as pos. unfold hold.
-  induction kn as [u place v lo pl vl | u u' b kn [lo IH] le | u u' b former k1 [lo1 IH1] k2 [lo2 IH2] le].
+  induction kn as [u place v lo pl vl | u u' b kn [lo IH] le | u u' b former k1 [lo1 IH1] k2 [lo2 IH2] le
+    | u place least speed_ lo pl vl | u b b' k1 [lo1 IH1] k2 [_ IH2]].
   - split; [exact lo |]. pose proof (pos u). cbn. split; [lra |]. split; cases; lra.
   - split; [lra |].
     assert (a0 : 0 < other_acceleration k) by (destruct ok; lra).
@@ -32,6 +33,8 @@ Proof.
     { cbn. cases; lra. }
     lra.
   - split; [exact lo2 |]. pose proof (advances t w u u' m le). cbn. split; [| lra]. split; [| lra]. cases; lra.
+  - split; [exact lo |]. pose proof (pos u). cbn. lra.
+  - split; [exact lo1 |]. cbn. split; split; cases; lra.
 Qed.
 
 (** * Crossing *)

@@ -1,5 +1,5 @@
 (* What every theorem rests on: check.sh compares it with axioms.txt. *)
-Require Import Ego Shield Merge Pair Choice Limit Precedence Turns Order Yield Lanes Newer Lag Driven Drivetrain Controls Passage Turned Ahead Lagging.
+Require Import Ego Shield Merge Pair Choice Limit Precedence Turns Order Yield Lanes Newer Lag Driven Drivetrain Controls Passage Turned Ahead Lagging Walks.
 Print Assumptions verified_plans_keep_apart.
 Print Assumptions at_most_one_comes_in_ahead.
 Print Assumptions shielded_vehicles_keep_apart.
@@ -24,6 +24,7 @@ Print Assumptions one_claim_is_newer.
 Print Assumptions held_is_newer.
 Print Assumptions precedence_is_safe_by_counts.
 Print Assumptions precedence_is_safe_in_lanes_by_counts.
+Print Assumptions pedestrians_are_kept_clear_of.
 Print Assumptions lag_is_a_delay.
 Print Assumptions plan_of_a_drivetrain_stops.
 Print Assumptions plan_of_a_drivetrain_clears.

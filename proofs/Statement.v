@@ -82,15 +82,25 @@ Definition after (k : contract) (b : bounds) (time : R) : bounds := {|
 Definition passed (b former : bounds) : bounds := {|
   t_least := Rmax (t_least former) (t_least b); t_most := t_most b; w_least := w_least b; w_most := w_most b |}.
 
+(* D18: within two bounds at once. *)
+Definition common (b b' : bounds) : bounds := {|
+  t_least := Rmax (t_least b) (t_least b'); t_most := Rmin (t_most b) (t_most b');
+  w_least := Rmax (w_least b) (w_least b'); w_most := Rmin (w_most b) (w_most b') |}.
+
 (* What the shield may know of an other at a time: what it sees (C3), what becomes of that while the other coasts, and
-   what it remembers. *)
+   what it remembers; and what it is told of who is out of sight (A14), alone or together with what is known of it by the edge
+   of before, or from what is seen once it has emerged. *)
 Inductive known (k : contract) (t w : R -> R) (from : R) : R -> bounds -> Prop :=
   | seen u place v :
       from <= u -> place - position_error k <= t u <= place + position_error k ->
       v - speed_error k <= w u <= v + speed_error k -> known k t w from u (sensed k place v)
   | coasts u u' b : known k t w from u b -> u <= u' -> known k t w from u' (after k b (u' - u))
   | remembered u u' b former :
-      known k t w from u former -> known k t w from u' b -> u <= u' -> known k t w from u' (passed b former).
+      known k t w from u former -> known k t w from u' b -> u <= u' -> known k t w from u' (passed b former)
+  | told u place least speed_ :
+      from <= u -> least <= t u <= place -> w u <= speed_ ->
+      known k t w from u {| t_least := least; t_most := place; w_least := 0; w_most := speed_ |}
+  | both u b b' : known k t w from u b -> known k t w from u b' -> known k t w from u (common b b').
 
 (* The gap from the other to an ego ahead of it in a lane is safe: D10. *)
 Definition safe (k : contract) (z : zone) (s v t w : R) := safe_gap k w v <= s - t - lead_to z.
