@@ -20,6 +20,7 @@ Print Assumptions never_both_equals.
 Print Assumptions never_both_sides.
 Print Assumptions precedence_is_safe_at_crossings.
 Print Assumptions precedence_is_safe_in_lanes.
+Print Assumptions precedence_keeps_apart.
 Print Assumptions one_claim_is_newer.
 Print Assumptions held_is_newer.
 Print Assumptions precedence_is_safe_by_counts.

@@ -475,3 +475,17 @@ Proof.
     assert (tau i0 <= tau i) by (apply (calls_ordered k tau ok (its_calls _ _ _ _ _ _ _ _ _ _ _ W)); apply rel).
     specialize (B ltac:(lra)). lra.
 Qed.
+
+Theorem precedence_keeps_apart : Theorem4.
+Proof.
+  intros k r zones occupied s v t w mine theirs tau c l b since tau' c' l' b' since' ok P6 rest P7 cov ms mt all u lo occ.
+  destruct (cov (s u) (t u) occ) as (z & zin & ins). destruct (all z zin) as (y & claimed & claimed' & ly & mir & kind).
+  assert (which : lane z = true \/ lane z = false) by (destruct (lane z); auto).
+  destruct which as [la | la]; rewrite la in kind, ly.
+  - destruct kind as (corner & out & out' & W & W' & order).
+    exact (precedence_is_safe_in_lanes k r z y s v t w mine theirs claimed tau c l b since claimed' tau' c' l' b' since' ok P6 rest P7
+             la ly mir corner ms mt W W' order out out' u lo ins).
+  - destruct kind as (W & W' & order).
+    exact (precedence_is_safe_at_crossings k r z y s v t w claimed tau c l b since claimed' tau' c' l' b' since' ok P6 rest
+             la ly mir ms mt W W' order u lo ins).
+Qed.

@@ -427,3 +427,21 @@ Definition Lane_guarantee (creeps : contract -> R -> Prop)
 
 (* Theorem 4 in lanes. *)
 Definition Theorem4_lane := Lane_guarantee creeps_behind judged_in_lane.
+
+(* Theorem 4: two shielded vehicles with a rule of precedence, each of whose zones is one of the two kinds, keep apart. *)
+Definition Theorem4 := forall k r zones occupied s v t w mine theirs tau c l b since tau' c' l' b' since',
+  valid k -> precedence_braking k <= ego_braking k -> 0 <= r < unheld k -> creeps_behind k r ->
+  cover zones occupied -> motion s v -> motion t w ->
+  (forall z, In z zones -> exists y claimed claimed', lane y = lane z /\ mirrored z y /\
+    if lane z then
+      lead_from z < s_in z - t_in z < lead_to z /\
+      s (Rmax (tau since) (tau' since')) < s_in z /\ t (Rmax (tau since) (tau' since')) < t_in z /\
+      watches k (judged_in_lane k l c b z claimed since mine theirs) s v t w tau c l b since /\
+      watches k (judged_in_lane k l' c' b' y claimed' since' theirs mine) t w s v tau' c' l' b' since' /\
+      forall i j, claimed i -> claimed' j -> newer k r tau i tau' j w \/ newer k r tau' j tau i v
+    else
+      watches k (judged k l c b z claimed since) s v t w tau c l b since /\
+      watches k (judged k l' c' b' y claimed' since') t w s v tau' c' l' b' since' /\
+      forall i j, (since <= i)%nat -> opened_at k b z claimed i -> (since' <= j)%nat -> opened_at k b' y claimed' j ->
+        newer k r tau i tau' j w \/ newer k r tau' j tau i v) ->
+  forall u, Rmax (tau since) (tau' since') <= u -> ~ occupied (s u) (t u).
