@@ -30,6 +30,7 @@ Print Assumptions lag_is_a_delay.
 Print Assumptions plan_of_a_drivetrain_stops.
 Print Assumptions plan_of_a_drivetrain_clears.
 Print Assumptions drivetrains_keep_apart.
+Print Assumptions drivetrains_share_a_lane.
 Print Assumptions a_drivetrain_can_meet_them.
 Print Assumptions lag_must_be_counted.
 Print Assumptions conditions_can_be_met.

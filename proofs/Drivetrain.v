@@ -1,7 +1,7 @@
 (* Theorem 1 for a drivetrain that is late and not exact: the induction over periods, with plans as Driven.v has them. *)
 Require Import Reals Lra Lia Psatz List.
 From Coquelicot Require Import Coquelicot.
-Require Import Contract Shipped Motion Reach Lag Drive Departs Clears Driven Statement Ego Plan Apart Entry Shield.
+Require Import Contract Shipped Motion Reach Lag Drive Departs Clears Driven Statement Ego Plan Apart Entry Shield Pair.
 Open Scope R_scope.
 
 (** * The theorem *)
@@ -93,8 +93,8 @@ Definition gives_way_driven :=
        carried k theta s v x pull tau c j n count (own_v (ego (S j))) parts late_) ->
     forall u, tau (S j) <= u <= tau (S i) -> t u <= t_in z \/ (lane z = true /\ lead_to z <= s u - t u).
 
-(* The conditions on the ego: C3 to C5, A13, A16; on an other: C2, C3, C6, C7, A9. *)
-Record conditions : Prop := {
+(* The conditions on the ego: C3 to C5, A13, A16; on an other: C2, C3. *)
+Record watches_driven : Prop := {
   contract_valid : valid_driven k;
   ego_moves : motion s v;
   ego_drives : drives k theta v x pull tau c;
@@ -107,7 +107,12 @@ Record conditions : Prop := {
   other_moves : motion t w;
   other_keeps : keeps_contract B w (tau since);
   other_seen : forall i, (since <= i)%nat -> known B t w (tau since) (tau i) (b i);
-  first_call : (1 <= since)%nat;
+  first_call : (1 <= since)%nat
+}.
+
+(* And C6, C7, A9. *)
+Record conditions : Prop := {
+  watching : watches_driven;
   keeps_gap : lane z = true -> keeps_distance B z s v t w (tau since);
   first_gap : lane z = true -> ahead_driven since ->
     safe B z (s (tau since)) (v (tau since)) (t (tau since)) (w (tau since));
@@ -122,6 +127,17 @@ Definition Theorem1_driven := forall k theta s v x pull tau c ego t w b zones oc
   (forall z, In z zones -> conditions k theta s v x pull tau c ego t w b z (claims z) since /\
     forall i, (since <= i)%nat -> judged_driven k theta s v x pull tau c ego b z (claims z) since i) ->
   forall u, tau since <= u -> ~ occupied (s u) (t u).
+
+(* Theorem 2 for drivetrains: two shielded vehicles that watch each other since before either was in a lane never are in it
+   together. They may have different lags. C6, C7 and A9 are not assumed, nor is precedence used. *)
+Definition Theorem2_driven := forall k theta s v x pull tau c ego b since theta' t w x' pull' tau' c' ego' b' since' z y,
+  lane z = true -> lane y = true -> mirrored z y -> lead_from z < s_in z - t_in z < lead_to z ->
+  watches_driven k theta s v x pull tau c ego t w b since ->
+  watches_driven k theta' t w x' pull' tau' c' ego' s v b' since' ->
+  (forall i, (since <= i)%nat -> judged_driven k theta s v x pull tau c ego b z (fun _ => False) since i) ->
+  (forall i, (since' <= i)%nat -> judged_driven k theta' t w x' pull' tau' c' ego' b' y (fun _ => False) since' i) ->
+  s (Rmax (tau since) (tau' since')) < s_in z -> t (Rmax (tau since) (tau' since')) < t_in z ->
+  forall u, Rmax (tau since) (tau' since') <= u -> ~ inside z (s u) (t u).
 
 Lemma safe_gap_driven_is k w v : safe_gap_driven k w v = safe_gap (bounding k) w v.
 Proof. reflexivity. Qed.
@@ -177,16 +193,16 @@ Qed.
 Section Zone.
 Variables (k : drivetrain) (theta : R) (s v x pull : R -> R) (tau c : nat -> R) (ego : nat -> own).
 Variables (t w : R -> R) (b : nat -> bounds) (z : zone) (claimed : nat -> Prop) (since : nat).
-Hypothesis holds_ : conditions k theta s v x pull tau c ego t w b z claimed since.
+Hypothesis holds_ : watches_driven k theta s v x pull tau c ego t w b since.
 
 Notation B := (bounding k).
-Let ok : valid_driven k := contract_valid _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ holds_.
+Let ok : valid_driven k := contract_valid _ _ _ _ _ _ _ _ _ _ _ _ _ holds_.
 Let okB : valid B := bounds_valid k ok.
-Let ms : motion s v := ego_moves _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ holds_.
-Let mt : motion t w := other_moves _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ holds_.
-Let grid : on_grid k tau := calls_on_grid _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ holds_.
-Let keeps : keeps_contract B w (tau since) := other_keeps _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ holds_.
-Let start_ : (1 <= since)%nat := first_call _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ holds_.
+Let ms : motion s v := ego_moves _ _ _ _ _ _ _ _ _ _ _ _ _ holds_.
+Let mt : motion t w := other_moves _ _ _ _ _ _ _ _ _ _ _ _ _ holds_.
+Let grid : on_grid k tau := calls_on_grid _ _ _ _ _ _ _ _ _ _ _ _ _ holds_.
+Let keeps : keeps_contract B w (tau since) := other_keeps _ _ _ _ _ _ _ _ _ _ _ _ _ holds_.
+Let start_ : (1 <= since)%nat := first_call _ _ _ _ _ _ _ _ _ _ _ _ _ holds_.
 
 Lemma in_order i j : (i <= j)%nat -> tau i <= tau j.
 Proof.
@@ -196,10 +212,10 @@ Proof.
 Qed.
 
 Lemma where_driven i : (1 <= i)%nat -> own_holds B (ego i) (s (tau i)) (v (tau i)).
-Proof. apply (ego_seen _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ holds_). Qed.
+Proof. apply (ego_seen _ _ _ _ _ _ _ _ _ _ _ _ _ holds_). Qed.
 
 Lemma what_driven i : (since <= i)%nat -> hold (b i) (t (tau i)) (w (tau i)).
-Proof. intros h. apply (known_holds B t w (tau since)); auto. apply (other_seen _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ holds_ i h). Qed.
+Proof. intros h. apply (known_holds B t w (tau since)); auto. apply (other_seen _ _ _ _ _ _ _ _ _ _ _ _ _ holds_ i h). Qed.
 
 Lemma keeps_since i : (since <= i)%nat -> keeps_contract B w (tau i).
 Proof. intros h. apply keeps_later with (tau since); [apply in_order, h | exact keeps]. Qed.
@@ -219,19 +235,19 @@ Qed.
 Lemma gentle_driven p q : tau since <= p -> p <= q -> v p - strongest k (ego_braking k) * (q - p) <= v q.
 Proof.
   intros lo le. pose proof hard_braking as [h0 _].
-  pose proof (ego_drives _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ holds_) as drive.
+  pose proof (ego_drives _ _ _ _ _ _ _ _ _ _ _ _ _ holds_) as drive.
   assert (falls : forall t1 t2, tau since <= t1 -> t1 <= t2 -> - strongest k (ego_braking k) * (t2 - t1) <= pull t2 - pull t1).
   { intros t1 t2 l1 l2. apply (pulls_down k theta v x pull tau c drive); [| exact l2 |].
     - apply Rle_trans with (2 := l1). apply in_order, start_.
-    - intros j _ _. pose proof (commands_in_range _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ holds_ j) as [r _].
+    - intros j _ _. pose proof (commands_in_range _ _ _ _ _ _ _ _ _ _ _ _ _ holds_ j) as [r _].
       destruct (can_drive k ok) as (_ & _ & _ & _ & _ & [g0 g1] & d0 & _). unfold strongest, weakest.
       assert (ego_gain k * Rmax (c j) (- c j) - ego_gain k * Rmax (ego_braking k) (- ego_braking k) <= c j + ego_braking k); [| lra].
       rewrite <- Rmult_minus_distr_l.
       assert (Rmax (c j) (- c j) - Rmax (ego_braking k) (- ego_braking k) <= c j + ego_braking k) by (cases; lra).
       destruct (Rle_lt_dec 0 (Rmax (c j) (- c j) - Rmax (ego_braking k) (- ego_braking k))) as [pos | neg]; nra. }
   pose proof (lag_brakes_no_harder theta x pull _ (tau since) (follows k theta v x pull tau c drive) (Rlt_le _ _ h0) falls
-                (first_acceleration _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ holds_)) as L.
-  destruct (ego_held _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ holds_ p q le) as [D | (y & [y1 y2] & _ & _ & _ & D)].
+                (first_acceleration _ _ _ _ _ _ _ _ _ _ _ _ _ holds_)) as L.
+  destruct (ego_held _ _ _ _ _ _ _ _ _ _ _ _ _ holds_ p q le) as [D | (y & [y1 y2] & _ & _ & _ & D)].
   - pose proof (L p q lo le). lra.
   - pose proof (L y q ltac:(lra) y2). assert (strongest k (ego_braking k) * (q - y) <= strongest k (ego_braking k) * (q - p))
       by (apply Rmult_le_compat_l; lra). lra.
@@ -316,7 +332,7 @@ Lemma clears_driven target : on_the_way -> in_time_driven k d n target ->
   forall u, T <= u <= E -> u <= T + clears -> grows B (v u) fast (T + clears - u).
 Proof.
   intros [moves_on unreduced] it.
-  pose proof (commands_in_range _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ holds_ (S j)) as [_ a1].
+  pose proof (commands_in_range _ _ _ _ _ _ _ _ _ _ _ _ _ holds_ (S j)) as [_ a1].
   destruct (can_drive k ok) as (_ & _ & _ & _ & _ & [g0 g1] & d0 & _).
   pose proof (acceleration_pos k ok) as a0. pose proof (go_commanded k ok) as ga.
   assert (up : forall p, p <= ego_acceleration k -> weakest k p <= strongest k (ego_acceleration k)).
@@ -387,19 +403,12 @@ Proof.
 Qed.
 End Carried.
 
-Hypothesis judges : forall i, (since <= i)%nat -> judged_driven k theta s v x pull tau c ego b z claimed since i.
+(* [first_gap_] is of an ego that is ahead in the lane from the beginning. *)
+Section Settled.
+Hypothesis first_gap_ : lane z = true -> ahead_driven k ego b z since ->
+  safe B z (s (tau since)) (v (tau since)) (t (tau since)) (w (tau since)).
 
-(* Once the gap is safe in the lane, it stays open. *)
-Lemma settled_for_good y u : lane z = true -> tau since <= y -> y <= u -> s_in z <= s y ->
-  safe B z (s y) (v y) (t y) (w y) -> ~ inside z (s u) (t u).
-Proof.
-  intros la lo le inn gap ((_ & sout) & (_ & tout) & _ & lead).
-  destruct (keeps_gap _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ holds_ la y u lo le inn gap sout tout) as (y' & [y1 y2] & gap' & react).
-  assert (lead_to z <= s u - t u); [| lra].
-  apply (stays_ahead B s v t w z y' u); auto.
-  - intros p q ? ? ?. apply (rushes B w _ keeps u); lra.
-  - intros p q ? ? ?. apply gentle_driven; lra.
-Qed.
+Hypothesis judges : forall i, (since <= i)%nat -> judged_driven k theta s v x pull tau c ego b z claimed since i.
 
 Lemma settles_well i : (since <= i)%nat -> settles_driven k theta s v x pull tau c ego b z since i ->
   exists y, tau since <= y <= tau i /\ s_in z <= s y /\ safe B z (s y) (v y) (t y) (w y).
@@ -418,7 +427,51 @@ Proof.
     unfold gap_ahead in gap.
     assert (Rmax (s_in z) (own_least (ego i)) <= s (tau i)) by (apply Rmax_lub; lra). lra.
   - exists (tau since). split; [lra |]. split; [lra |].
-    apply (first_gap _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ holds_ la). split; assumption.
+    apply (first_gap_ la). split; assumption.
+Qed.
+
+(* Who has no precedence is before the lane, or behind, or one of both has left; or it leads, or has led. *)
+Lemma outcome_driven u : lane z = true -> (forall i, ~ claimed i) -> s (tau since) < s_in z -> tau since <= u ->
+  s u < s_in z \/ s u - t u <= lead_from z \/ s_out z <= s u \/ t_out z <= t u \/
+  exists y, tau since <= y <= u /\ s_in z <= s y /\ lead_to z <= s y - t y.
+Proof.
+  intros la none before lo0.
+  assert (gap_open : forall y, safe B z (s y) (v y) (t y) (w y) -> lead_to z <= s y - t y).
+  { intros y sf. unfold safe in sf. rewrite safe_gap_is in sf.
+    pose proof (Rmax_r (rest_of (rush B (w y) (follower_reaction B)) (follower_braking B) - rest_of (start (v y)) (hardest B)) 0). lra. }
+  destruct (between k tau since u (period_pos B okB) grid (in_order since (S since) ltac:(lia)) lo0) as (i & h & [lo hi]).
+  destruct (where_driven i ltac:(lia)) as (sT & vT & least_). destruct (what_driven i h) as [tT wT].
+  destruct (judges i h) as [[past | past] | [(i0 & [r1 r2] & se) | [(j & count & n & parts & late_ & from & -> & car & ver)
+    | (j & count & n & parts & late_ & from & -> & car & cl & _)]]].
+  - right; right; left. pose proof (advances s v (tau i) u ms lo). lra.
+  - do 3 right; left. pose proof (advances t w (tau i) u mt lo). lra.
+  - do 4 right. destruct (settles_well i0 r1 se) as (y & [y1 y2] & inn & gap). pose proof (in_order i0 i r2).
+    exists y. split; [lra |]. split; [exact inn | apply gap_open, gap].
+  - assert (hu : tau (S j) <= u <= tau (S (S j + count))).
+    { split; [apply Rle_trans with (tau (S j + count)%nat); [apply in_order; lia | lra] | lra]. }
+    destruct ver as [st | other_way]; [left; exact (before_limit j n count parts late_ from car u st hu) |].
+    rewrite la in other_way. destruct other_way as [st | [way en]].
+    + right; left. exact (behind_driven j n count parts late_ from car u st hu).
+    + destruct (Rlt_le_dec (s u) (s_in z)) as [out | inn]; [left; exact out |]. do 4 right.
+      destruct (entering_driven j n count parts late_ from car u way en hu inn) as (y & [y1 y2] & inn' & gap).
+      exists y. split; [| split; [exact inn' | apply gap_open, gap]].
+      split; [apply Rle_trans with (tau (S j)); [apply in_order, from | lra] | lra].
+  - destruct (none _ cl).
+Qed.
+
+Hypothesis gap_kept : lane z = true -> keeps_distance B z s v t w (tau since).
+Hypothesis gives : gives_way_driven k theta s v x pull tau c ego t w z claimed since.
+
+(* Once the gap is safe in the lane, it stays open. *)
+Lemma settled_for_good y u : lane z = true -> tau since <= y -> y <= u -> s_in z <= s y ->
+  safe B z (s y) (v y) (t y) (w y) -> ~ inside z (s u) (t u).
+Proof.
+  intros la lo le inn gap ((_ & sout) & (_ & tout) & _ & lead).
+  destruct (gap_kept la y u lo le inn gap sout tout) as (y' & [y1 y2] & gap' & react).
+  assert (lead_to z <= s u - t u); [| lra].
+  apply (stays_ahead B s v t w z y' u); auto.
+  - intros p q ? ? ?. apply (rushes B w _ keeps u); lra.
+  - intros p q ? ? ?. apply gentle_driven; lra.
 Qed.
 
 Lemma never_inside u : tau since <= u -> ~ inside z (s u) (t u).
@@ -446,7 +499,7 @@ Proof.
   - destruct (what_driven (S j) from) as [tS wS]. pose proof (forwards t w mt (tau (S j))) as w0.
     intros (_ & [tin _] & [_ led]).
     assert (t u <= t_in z \/ (lane z = true /\ lead_to z <= s u - t u)); [| lra].
-    apply (gives_way_ _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ holds_ j (S j + count)%nat); auto; [lia | | | ].
+    apply (gives j (S j + count)%nat); auto; [lia | | | ].
     + apply Rle_trans with (2 := stop). unfold rest_of. cbn [distance speed].
       assert (p0 : 0 < precedence_braking k) by exact (precedence_braking_pos B okB).
       change (precedence_braking B) with (precedence_braking k).
@@ -456,11 +509,42 @@ Proof.
     + exists n, count, parts, late_. auto.
     + split; [apply Rle_trans with (tau (S j + count)%nat); [apply in_order; lia | lra] | lra].
 Qed.
+End Settled.
 End Zone.
 
 Theorem drivetrains_keep_apart : Theorem1_driven.
 Proof.
   intros k theta s v x pull tau c ego t w b zones occupied claims since cov all u lo occ.
-  destruct (cov (s u) (t u) occ) as (z & zin & ins). destruct (all z zin) as [holds_ judges].
-  exact (never_inside k theta s v x pull tau c ego t w b z (claims z) since holds_ judges u lo ins).
+  destruct (cov (s u) (t u) occ) as (z & zin & ins). destruct (all z zin) as [[watching_ gap first gives] judges].
+  exact (never_inside k theta s v x pull tau c ego t w b z (claims z) since watching_ first judges gap gives u lo ins).
+Qed.
+
+(** * Two *)
+
+Theorem drivetrains_share_a_lane : Theorem2_driven.
+Proof.
+  intros k theta s v x pull tau c ego b since theta' t w x' pull' tau' c' ego' b' since' z y lz ly (m1 & m2 & m3 & m4 & m5 & m6) corner
+    W W' J J' sb tb.
+  set (T := Rmax (tau since) (tau' since')) in *.
+  pose proof (Rmax_l (tau since) (tau' since')) as T1. pose proof (Rmax_r (tau since) (tau' since')) as T2. fold T in T1, T2.
+  pose proof (ego_moves _ _ _ _ _ _ _ _ _ _ _ _ _ W) as ms. pose proof (ego_moves _ _ _ _ _ _ _ _ _ _ _ _ _ W') as mt.
+  pose proof (advances s v (tau since) T ms T1). pose proof (advances t w (tau' since') T mt T2).
+  assert (out : ~ ahead_driven k ego b z since).
+  { intros [least_ _]. pose proof (where_driven _ _ _ _ _ _ _ _ _ _ _ _ _ W since (first_call _ _ _ _ _ _ _ _ _ _ _ _ _ W)) as (_ & _ & l). lra. }
+  assert (out' : ~ ahead_driven k ego' b' y since').
+  { intros [least_ _]. pose proof (where_driven _ _ _ _ _ _ _ _ _ _ _ _ _ W' since' (first_call _ _ _ _ _ _ _ _ _ _ _ _ _ W')) as (_ & _ & l).
+    rewrite m1 in least_. lra. }
+  apply (one_leads z s v t w T corner ms mt).
+  - intros u h. destruct (outcome_driven k theta s v x pull tau c ego t w b z (fun _ => False) since W
+      (fun _ a => match out a with end) J u lz (fun _ f => f) ltac:(lra) ltac:(lra)) as [? | [? | [? | [? | (q & hq & sq & lq)]]]]; auto.
+    do 4 right. exists q. split; [| auto]. split; [| lra].
+    destruct (Rle_dec T q) as [? | before]; [assumption | exfalso]. pose proof (advances s v q T ms ltac:(lra)). lra.
+  - intros u h. destruct (outcome_driven k theta' t w x' pull' tau' c' ego' s v b' y (fun _ => False) since' W'
+      (fun _ a => match out' a with end) J' u ly (fun _ f => f) ltac:(rewrite m1; lra) ltac:(lra)) as [? | [? | [? | [? | (q & hq & sq & lq)]]]].
+    + left. lra.
+    + right; left. lra.
+    + do 2 right; left. lra.
+    + do 3 right; left. lra.
+    + do 4 right. exists q. rewrite m1 in sq. rewrite m6 in lq. split; [| split; lra]. split; [| lra].
+      destruct (Rle_dec T q) as [? | before]; [assumption | exfalso]. pose proof (advances t w q T mt ltac:(lra)). lra.
 Qed.

@@ -90,7 +90,7 @@ Theorem a_drivetrain_can_meet_them :
   forall i, (1 <= i)%nat -> judged_driven slow_ 1 (fun _ => 0) (fun _ => 0) x pull INR c ego view ahead_ (fun _ => False) 1 i.
 Proof.
   split.
-  - constructor; try (intros; discriminate).
+  - constructor; try (intros; discriminate); [constructor |].
     + exact slow_valid.
     + apply (rest_moves 0).
     + exact ego_drives_.
