@@ -11,7 +11,8 @@ Lemma known_holds k t w from u b :
   from <= u /\ hold b (t u) (w u).
 Proof.
   intros ok m keeps kn. pose proof (forwards t w m) as pos. unfold hold.
-  induction kn as [u place v lo pl vl | u u' b kn [lo IH] le | u u' b former k1 [lo1 IH1] k2 [lo2 IH2] le].
+  induction kn as [u place v lo pl vl | u u' b kn [lo IH] le | u u' b former k1 [lo1 IH1] k2 [lo2 IH2] le
+    | u place least speed_ lo pl vl | u b b' k1 [lo1 IH1] k2 [_ IH2]].
   - split; [exact lo |]. pose proof (pos u). cbn. split; [lra |]. split; cases; lra.
   - split; [lra |].
     assert (a0 : 0 < other_acceleration k) by (destruct ok; lra).
@@ -32,6 +33,8 @@ Proof.
     { cbn. cases; lra. }
     lra.
   - split; [exact lo2 |]. pose proof (advances t w u u' m le). cbn. split; [| lra]. split; [| lra]. cases; lra.
+  - split; [exact lo |]. pose proof (pos u). cbn. lra.
+  - split; [exact lo1 |]. cbn. split; split; cases; lra.
 Qed.
 
 (** * Crossing *)
@@ -56,19 +59,17 @@ Qed.
 (** * Behind in a lane *)
 
 (* L21, L22: the gap to a leader that brakes as hard as it can is open now, and open when both are at rest, so it is open
-   always. [rests] bounds where the ego would be at rest if it braked from any moment on. *)
-Lemma stays_behind k s v t w T E rests gap W :
-  valid k -> motion s v -> motion t w -> keeps_contract k w T ->
-  (forall x y, T <= x -> x <= y -> y <= E -> v x - ego_braking k * (y - x) <= v y) ->
-  (forall x, T <= x <= E -> s x - s T + v x * v x / (ego_braking k + ego_braking k) <= rests) ->
+   always. The ego brakes at [hard] at most; [rests] bounds where it would be at rest if it braked at [b] from any moment on. *)
+Lemma stays_behind k hard b s v t w T E rests gap W :
+  valid k -> hard <= other_braking k -> 0 < b <= other_braking k -> motion s v -> motion t w -> keeps_contract k w T ->
+  (forall x y, T <= x -> x <= y -> y <= E -> v x - hard * (y - x) <= v y) ->
+  (forall x, T <= x <= E -> s x - s T + v x * v x / (b + b) <= rests) ->
   0 <= gap ->
   0 <= W <= w T -> rests <= gap + W * W / (other_braking k + other_braking k) ->
   forall u, T <= u <= E -> s u - t u <= s T - t T + gap.
 Proof.
-  intros ok ms mt keeps gentle stop g0 [W0 Ww] enough u [lo hi].
-  assert (b0 : 0 < ego_braking k) by (destruct ok; lra).
-  assert (bb : ego_braking k <= other_braking k) by (destruct ok; lra).
-  set (b := ego_braking k) in *. set (bh := other_braking k) in *.
+  intros ok hb [b0 bb] ms mt keeps gentle stop g0 [W0 Ww] enough u [lo hi].
+  set (bh := other_braking k) in *.
   pose proof (forwards s v ms) as vpos. pose proof (forwards t w mt) as wpos.
   assert (low : forall x, T <= x -> W - bh * (x - T) <= w x).
   { intros x ?. pose proof (brakes k w T keeps x T x ltac:(lra) ltac:(lra) ltac:(lra)). fold bh in H0. lra. }
@@ -76,7 +77,7 @@ Proof.
   - pose proof (gap_opens t w s v T u mt ms lo) as G.
     assert (s u - s T <= t u - t T); [| lra].
     apply G. intros x [? ?]. pose proof (gentle x u ltac:(lra) ltac:(lra) ltac:(lra)). pose proof (low x ltac:(lra)).
-    assert (b * (u - x) <= bh * (u - x)) by (apply Rmult_le_compat_r; lra). nra.
+    assert (hard * (u - x) <= bh * (u - x)) by (apply Rmult_le_compat_r; lra). nra.
   - pose proof (stop u ltac:(lra)) as R. pose proof (vpos u).
     assert (far : W * W / (bh + bh) - Rmax (W - bh * (u - T)) 0 * Rmax (W - bh * (u - T)) 0 / (bh + bh) <= t u - t T).
     { destruct (Rle_dec 0 (W - bh * (u - T))) as [moving | rest].

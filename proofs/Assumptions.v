@@ -1,5 +1,5 @@
 (* What every theorem rests on: check.sh compares it with axioms.txt. *)
-Require Import Ego Shield Merge Pair Choice Limit Precedence Turns Order Yield Newer Lag Driven Controls Passage Turned.
+Require Import Ego Shield Merge Pair Choice Limit Precedence Turns Order Yield Lanes Newer Lag Driven Drivetrain Controls Passage Turned Ahead Lagging Walks.
 Print Assumptions verified_plans_keep_apart.
 Print Assumptions at_most_one_comes_in_ahead.
 Print Assumptions shielded_vehicles_keep_apart.
@@ -19,11 +19,19 @@ Print Assumptions never_both_right_of_way.
 Print Assumptions never_both_equals.
 Print Assumptions never_both_sides.
 Print Assumptions precedence_is_safe_at_crossings.
+Print Assumptions precedence_is_safe_in_lanes.
+Print Assumptions precedence_keeps_apart.
 Print Assumptions one_claim_is_newer.
+Print Assumptions held_is_newer.
 Print Assumptions precedence_is_safe_by_counts.
+Print Assumptions precedence_is_safe_in_lanes_by_counts.
+Print Assumptions pedestrians_are_kept_clear_of.
 Print Assumptions lag_is_a_delay.
 Print Assumptions plan_of_a_drivetrain_stops.
 Print Assumptions plan_of_a_drivetrain_clears.
+Print Assumptions drivetrains_keep_apart.
+Print Assumptions drivetrains_share_a_lane.
+Print Assumptions a_drivetrain_can_meet_them.
 Print Assumptions lag_must_be_counted.
 Print Assumptions conditions_can_be_met.
 Print Assumptions a_passage_can_be_verified.
@@ -33,3 +41,5 @@ Print Assumptions C2_acceleration_is_needed.
 Print Assumptions slack_is_needed.
 Print Assumptions A1_is_needed.
 Print Assumptions newer_is_needed.
+Print Assumptions P7_is_needed.
+Print Assumptions arrivals_are_needed.

@@ -1,6 +1,6 @@
-(* Theorem 4 at crossings: of two claims one is newer, by the grace that Theorem 3 counts. *)
+(* Theorem 4 from what shields count: of two claims one is newer, by the grace that Theorem 3 counts. *)
 Require Import Reals Lra Lia Psatz Arith.
-Require Import Contract Shipped Motion Reach Statement Ego Precedence Turns Yield.
+Require Import Contract Shipped Motion Reach Statement Ego Apart Precedence Turns Yield Lanes.
 
 Section Newer.
 Variables (k : contract) (v : bool -> R -> R) (arrival : bool -> R) (from r : R).
@@ -181,9 +181,10 @@ Proof.
   pose proof three as m3. unfold d in *.
   destruct (S_counts _ _ _ _ _ _ _ _ _ _ _ C a) as [short stretch].
   pose proof (begins_least m T G patient graceful n).
-  exists (g (a - 1)%nat).
+  exists (g (a - 1)%nat), (g a).
   pose proof (sure_of _ _ _ _ _ _ _ _ _ _ _ C (a - 1)%nat (stretch (a - 1)%nat ltac:(lia) ltac:(lia)) x) as [still _].
-  split; [exact still |].
+  pose proof (sure_of _ _ _ _ _ _ _ _ _ _ _ C a (stretch a ltac:(lia) ltac:(lia)) x) as [still' _].
+  split; [exact still |]. split; [exact still' |].
   pose proof (spacing k g gg (a - (G + 1 - m)) (G - m)) as [A _]. replace (a - (G + 1 - m) + (G - m))%nat with (a - 1)%nat in A by lia.
   pose proof (spacing k g gg (a - 1) 1) as [B _]. replace (a - 1 + 1)%nat with a in B by lia. simpl INR in B.
   pose proof (calls_ordered k g ok gg a last le).
@@ -193,6 +194,58 @@ Proof.
   { apply Rmult_lt_reg_r with (ego_go k); [exact g0 |]. replace (r / ego_go k * ego_go k)%R with r by (field; lra). lra. }
   replace (G - m)%nat with (S (G - m - 1)) in A by lia. rewrite S_INR in A.
   pose proof (A3_latency k ok). pose proof (jitter_nonneg k ok). unfold switching in *. split; lra.
+Qed.
+
+(* P stands in a zone that is held: both have surely rested for more than the grace, and P is so far beyond the zone's border as it
+   may have crept meanwhile; up to call h, or since. *)
+Definition held (z : zone) (l : log) (S_ : nat -> nat) (i : nat) := exists h, (h <= i)%nat /\ (G + 1 <= S_ h)%nat /\
+  (s_in z + (INR (G + 1) * period k * (r + dip k / 2) + position_error k) < own_s (ego_at l h))%R.
+
+(* Such a claim is newer than every one by which Q opens the zone: Q did so before P was in it, and has been seen at rest since. *)
+Lemma held_is_newer p q sure ended S_ L place x z y c l (claimed' : nat -> Prop) b' i j :
+  counts p sure ended S_ L -> on_grid k q -> (0 <= r)%R -> motion place (v x) -> true_log k l place (v x) p c ->
+  mirrored z y -> hold (b' j) (place (q j)) (v x (q j)) ->
+  held z l S_ i -> opened_at k b' y claimed' j -> newer k r p i q j (v (negb x)).
+Proof.
+  intros P gq r0 moves_ truth_ mir [[_ tT] _] (h & hi & rested & beyond) [_ stop].
+  pose proof (grid_of _ _ _ _ _ _ _ _ _ _ _ P) as gp. pose proof three as m3.
+  destruct (S_counts _ _ _ _ _ _ _ _ _ _ _ P h) as [short stretch].
+  destruct (truth_ (h - 1)%nat) as ((sT & _) & _). replace (S (h - 1)) with h in sT by lia.
+  assert (slow : forall n w, (h - G <= n <= h)%nat -> (v w (p n) <= r)%R).
+  { intros n w hn. apply (sure_of _ _ _ _ _ _ _ _ _ _ _ P n (stretch n ltac:(lia) ltac:(lia)) w). }
+  assert (begun_ : (from <= p (h - G)%nat)%R).
+  { apply Rle_trans with (1 := begun _ _ _ _ _ _ _ _ _ _ _ P). apply (calls_ordered k p ok gp). lia. }
+  (* P was in the zone G periods before. *)
+  pose proof (creeps_throughout k (v x) from r ok (keeps x) p gp place (h - G) G moves_ begun_) as C.
+  replace (h - G + G)%nat with h in C by lia.
+  specialize (C ltac:(intros n hn; apply slow; lia)).
+  pose proof (spacing k p gp (h - G) G) as [_ span]. replace (h - G + G)%nat with h in span by lia.
+  assert (d0 : (0 <= r + dip k / 2)%R).
+  { assert (0 <= dip k)%R; [| lra]. unfold dip. destruct ok.
+    apply Rmult_le_pos; [lra |]. apply Rmult_le_pos; [nra | left; apply Rinv_0_lt_compat; lra]. }
+  assert (way : ((p h - p (h - G)%nat) * (r + dip k / 2) <= INR (G + 1) * period k * (r + dip k / 2))%R).
+  { apply Rmult_le_compat_r; [exact d0 |]. rewrite plus_INR. simpl INR.
+    assert (0 < period k)%R by (destruct ok; lra). lra. }
+  (* And not yet when Q could open it. *)
+  assert (before : (q j < p (h - G)%nat)%R).
+  { destruct (Rlt_le_dec (q j) (p (h - G)%nat)) as [? | late]; [assumption | exfalso].
+    pose proof (advances place (v x) (p (h - G)%nat) (q j) moves_ late) as on_.
+    destruct mir as (_ & _ & m3' & _). rewrite m3' in stop. unfold rest_of in stop. cbn in stop.
+    assert (0 <= w_most (b' j) * w_most (b' j) / (precedence_braking k + precedence_braking k))%R.
+    { apply Rmult_le_pos; [apply Rle_0_sqr | left; apply Rinv_0_lt_compat; destruct ok; lra]. }
+    lra. }
+  exists (p (h - 1)%nat), (p h). split; [apply slow; lia |]. split; [apply slow; lia |].
+  pose proof (spacing k q gq j 1) as [_ next]. replace (j + 1)%nat with (S j) in next by lia. simpl INR in next.
+  pose proof (spacing k p gp (h - G) (G - 1)) as [A _]. replace (h - G + (G - 1))%nat with (h - 1)%nat in A by lia.
+  pose proof (spacing k p gp (h - 1) 1) as [B _]. replace (h - 1 + 1)%nat with h in B by lia. simpl INR in B.
+  pose proof (calls_ordered k p ok gp h i hi).
+  assert (g0 : (0 < ego_go k)%R) by (destruct ok; lra).
+  assert (gone : (r / ego_go k < INR (G - m - 1) * period k)%R).
+  { apply Rmult_lt_reg_r with (ego_go k); [exact g0 |]. replace (r / ego_go k * ego_go k)%R with r by (field; lra). lra. }
+  pose proof (A3_latency k ok). pose proof (jitter_nonneg k ok). unfold switching in *.
+  destruct en as [[-> j0] | [-> j8]].
+  - replace (G - 1)%nat with (S (S (G - 2 - 1))) in A by lia. rewrite !S_INR in A. split; lra.
+  - replace (G - 1)%nat with (S (S (S (G - 3 - 1)))) in A by lia. rewrite !S_INR in A. split; lra.
 Qed.
 
 (* P holds a turn, and Q claims: one of both claims is newer. *)
@@ -245,7 +298,7 @@ Hypothesis order : agree p q L_q owns_p owns_q.
 Hypothesis order' : agree q p L_p owns_q owns_p.
 Hypothesis by_arrival : forall i j, claim_p i -> ~ claim_q j.
 
-(* Of each two claims of two shields one is newer: the premise of Theorem 4 at crossings. *)
+(* Of each two claims of two shields one is newer: the premise of Theorem 4. *)
 Theorem one_claim_is_newer i j : claim_p i \/ turn_p i <> None -> claim_q j \/ turn_q j <> None ->
   (forall x, newer k r p i q j (v x)) \/ (forall x, newer k r q j p i (v x)).
 Proof.
@@ -257,18 +310,52 @@ Proof.
     apply (turn_and_claim p q sure_p ended_p sure_q ended_q S_p S_q L_p L_q owns_p owns_q turn_p turn_q claim_q i n j); auto.
 Qed.
 
-(* Theorem 4 at crossings, from what the shields count: P is the shield of vehicle x. *)
-Theorem precedence_is_safe_by_counts place x z y c l b since c' l' b' since' :
-  (precedence_braking k <= ego_braking k)%R -> (0 <= r < unheld k)%R -> lane z = false -> lane y = false -> mirrored z y ->
-  (forall w, motion (place w) (v w)) ->
-  watches k z (place x) (v x) (place (negb x)) (v (negb x)) (fun i => claim_p i \/ turn_p i <> None) p c l b since ->
-  watches k y (place (negb x)) (v (negb x)) (place x) (v x) (fun j => claim_q j \/ turn_q j <> None) q c' l' b' since' ->
+(* Theorem 4 from what the shields count: P is the shield of vehicle x. *)
+Section Vehicles.
+Variables (place : bool -> R -> R) (x : bool) (z y : zone) (c c' : nat -> R) (l l' : log) (b b' : nat -> bounds) (since since' : nat).
+Hypothesis P6 : (precedence_braking k <= ego_braking k)%R.
+Hypothesis rest : (0 <= r < unheld k)%R.
+Hypothesis mir : mirrored z y.
+Hypothesis moves : forall w, motion (place w) (v w).
+Let claimed i := claim_p i \/ turn_p i <> None.
+Let claimed' j := claim_q j \/ turn_q j <> None.
+(* At a crossing, one may also hold a zone. *)
+Let claimed_or_held i := claimed i \/ held z l S_p i.
+Let claimed_or_held' j := claimed' j \/ held y l' S_q j.
+
+Lemma newer_order i j : claimed i -> claimed' j -> newer k r p i q j (v (negb x)) \/ newer k r q j p i (v x).
+Proof. intros ci cj. destruct (one_claim_is_newer i j ci cj) as [n | n]; [left | right]; apply n. Qed.
+
+Theorem precedence_is_safe_by_counts : lane z = false -> lane y = false ->
+  watches k (judged k l c b z claimed_or_held since) (place x) (v x) (place (negb x)) (v (negb x)) p c l b since ->
+  watches k (judged k l' c' b' y claimed_or_held' since') (place (negb x)) (v (negb x)) (place x) (v x) q c' l' b' since' ->
   forall u, (Rmax (p since) (q since') <= u)%R -> ~ inside z (place x u) (place (negb x) u).
 Proof.
-  intros P6 rest lz ly mir moves W W'.
-  apply (precedence_is_safe_at_crossings k r z y (place x) (v x) (place (negb x)) (v (negb x)) (fun i => claim_p i \/ turn_p i <> None)
-           p c l b since (fun j => claim_q j \/ turn_q j <> None) q c' l' b' since' ok P6 rest lz ly mir (moves x) (moves (negb x)) W W').
-  intros i j ci cj. destruct (one_claim_is_newer i j ci cj) as [n | n]; [left | right]; apply n.
+  intros lz ly W W'.
+  apply (precedence_is_safe_at_crossings k r z y (place x) (v x) (place (negb x)) (v (negb x)) claimed_or_held p c l b since
+           claimed_or_held' q c' l' b' since' ok P6 rest lz ly mir (moves x) (moves (negb x)) W W').
+  pose proof W as [gp _ true_ keeps_ view _ _]. pose proof W' as [gq _ true_' keeps_' view' _ _].
+  intros i j hi open hj open'.
+  destruct (known_holds k _ _ _ _ _ ok (moves (negb x)) keeps_ (view i hi)) as [_ B].
+  destruct (known_holds k _ _ _ _ _ ok (moves x) keeps_' (view' j hj)) as [_ B'].
+  pose proof open as [[cl | h] _]; [pose proof open' as [[cl' | h'] _]; [exact (newer_order i j cl cl') |] |].
+  - right. pose proof (held_is_newer q p _ _ _ _ (place (negb x)) (negb x) y z c' l' claimed_or_held b j i Q gp (proj1 rest)
+      (moves (negb x)) true_' (mirrored_back z y mir) B h' open) as N. rewrite Bool.negb_involutive in N. exact N.
+  - left. exact (held_is_newer p q _ _ _ _ (place x) x z y c l claimed_or_held' b' i j P gq (proj1 rest)
+      (moves x) true_ mir B' h open').
 Qed.
+
+Theorem precedence_is_safe_in_lanes_by_counts mine theirs : lane z = true -> lane y = true ->
+  creeps_behind k r -> (lead_from z < s_in z - t_in z < lead_to z)%R ->
+  watches k (judged_in_lane k l c b z claimed since mine theirs) (place x) (v x) (place (negb x)) (v (negb x)) p c l b since ->
+  watches k (judged_in_lane k l' c' b' y claimed' since' theirs mine) (place (negb x)) (v (negb x)) (place x) (v x) q c' l' b' since' ->
+  (place x (Rmax (p since) (q since')) < s_in z)%R -> (place (negb x) (Rmax (p since) (q since')) < t_in z)%R ->
+  forall u, (Rmax (p since) (q since') <= u)%R -> ~ inside z (place x u) (place (negb x) u).
+Proof.
+  intros lz ly P7 corner W W'.
+  exact (precedence_is_safe_in_lanes k r z y (place x) (v x) (place (negb x)) (v (negb x)) mine theirs claimed p c l b since claimed' q
+           c' l' b' since' ok P6 rest P7 lz ly mir corner (moves x) (moves (negb x)) W W' newer_order).
+Qed.
+End Vehicles.
 End Two.
 End Newer.

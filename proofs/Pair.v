@@ -55,31 +55,20 @@ Lemma shielded_outcome k z s v t w from u :
   exists x, from <= x <= u /\ s_in z <= s x /\ lead_to z <= s x - t x.
 Proof.
   intros ok la ms mt [(tau & c & l & b & since & -> & st & grid & obey & true & keeps & seen & judges)] before lo.
-  destruct (between_calls k tau ok grid since st u lo) as (i & hi & hu).
+  destruct (between_calls k tau ok grid since u lo) as (i & hi & hu).
   apply (judged_outcome k s v tau c l) with (b := b) (w := w) (claimed := fun _ => False) (i := i); auto.
 Qed.
 
-Theorem shielded_vehicles_keep_apart : Theorem2_together.
+(* In a lane, if each of the two is, at every time, before the lane, or behind, or past it, or leads or has led. *)
+Lemma one_leads z s v t w T :
+  lead_from z < s_in z - t_in z < lead_to z -> motion s v -> motion t w ->
+  (forall u, T <= u -> s u < s_in z \/ s u - t u <= lead_from z \/ s_out z <= s u \/ t_out z <= t u \/
+    exists x, T <= x <= u /\ s_in z <= s x /\ lead_to z <= s x - t x) ->
+  (forall u, T <= u -> t u < t_in z \/ lead_to z <= s u - t u \/ t_out z <= t u \/ s_out z <= s u \/
+    exists x, T <= x <= u /\ t_in z <= t x /\ s x - t x <= lead_from z) ->
+  forall u, T <= u -> ~ inside z (s u) (t u).
 Proof.
-  intros k z y s v t w from from' ok lz ly (m1 & m2 & m3 & m4 & m5 & m6) corner ms mt sh sh' sb tb u0 lo ins.
-  set (T := Rmax from from') in *.
-  assert (T1 : from <= T) by apply Rmax_l. assert (T2 : from' <= T) by apply Rmax_r.
-  pose proof (advances s v from T ms T1). pose proof (advances t w from' T mt T2).
-  assert (OE : forall u, T <= u -> s u < s_in z \/ s u - t u <= lead_from z \/ s_out z <= s u \/ t_out z <= t u \/
-            exists x, T <= x <= u /\ s_in z <= s x /\ lead_to z <= s x - t x).
-  { intros u h. destruct (shielded_outcome k z s v t w from u ok lz ms mt sh ltac:(lra) ltac:(lra))
-      as [? | [? | [? | [? | (x & hx & sx & lx)]]]]; auto.
-    do 4 right. exists x. split; [| auto]. split; [| lra].
-    destruct (Rle_dec T x) as [? | before]; [assumption | exfalso].
-    pose proof (advances s v x T ms ltac:(lra)). lra. }
-  assert (OF : forall u, T <= u -> t u < t_in z \/ lead_to z <= s u - t u \/ t_out z <= t u \/ s_out z <= s u \/
-            exists x, T <= x <= u /\ t_in z <= t x /\ s x - t x <= lead_from z).
-  { intros u h. destruct (shielded_outcome k y t w s v from' u ok ly mt ms sh' ltac:(lra) ltac:(lra))
-      as [? | [? | [? | [? | (x & hx & sx & lx)]]]]; try (rewrite ?m1, ?m2, ?m4, ?m5 in *; auto; fail).
-    - right; left. lra.
-    - do 4 right. exists x. rewrite m1 in sx. rewrite m6 in lx. split; [| split; lra].
-      split; [| lra]. destruct (Rle_dec T x) as [? | before]; [assumption | exfalso].
-      pose proof (advances t w x T mt ltac:(lra)). lra. }
+  intros corner ms mt OE OF u0 lo ins.
   destruct ins as ([si so] & [ti to_] & [l1 l2]).
   destruct (OE u0 lo) as [? | [? | [? | [? | (x & hx & sx & lx)]]]]; try lra.
   destruct (OF u0 lo) as [? | [? | [? | [? | (x' & hx' & sx' & lx')]]]]; try lra.
@@ -119,6 +108,30 @@ Proof.
     apply (firstE r ltac:(lra)). lra.
 Qed.
 
+Theorem shielded_vehicles_keep_apart : Theorem2_together.
+Proof.
+  intros k z y s v t w from from' ok lz ly (m1 & m2 & m3 & m4 & m5 & m6) corner ms mt sh sh' sb tb.
+  set (T := Rmax from from') in *.
+  assert (T1 : from <= T) by apply Rmax_l. assert (T2 : from' <= T) by apply Rmax_r.
+  pose proof (advances s v from T ms T1). pose proof (advances t w from' T mt T2).
+  assert (OE : forall u, T <= u -> s u < s_in z \/ s u - t u <= lead_from z \/ s_out z <= s u \/ t_out z <= t u \/
+            exists x, T <= x <= u /\ s_in z <= s x /\ lead_to z <= s x - t x).
+  { intros u h. destruct (shielded_outcome k z s v t w from u ok lz ms mt sh ltac:(lra) ltac:(lra))
+      as [? | [? | [? | [? | (x & hx & sx & lx)]]]]; auto.
+    do 4 right. exists x. split; [| auto]. split; [| lra].
+    destruct (Rle_dec T x) as [? | before]; [assumption | exfalso].
+    pose proof (advances s v x T ms ltac:(lra)). lra. }
+  assert (OF : forall u, T <= u -> t u < t_in z \/ lead_to z <= s u - t u \/ t_out z <= t u \/ s_out z <= s u \/
+            exists x, T <= x <= u /\ t_in z <= t x /\ s x - t x <= lead_from z).
+  { intros u h. destruct (shielded_outcome k y t w s v from' u ok ly mt ms sh' ltac:(lra) ltac:(lra))
+      as [? | [? | [? | [? | (x & hx & sx & lx)]]]]; try (rewrite ?m1, ?m2, ?m4, ?m5 in *; auto; fail).
+    - right; left. lra.
+    - do 4 right. exists x. rewrite m1 in sx. rewrite m6 in lx. split; [| split; lra].
+      split; [| lra]. destruct (Rle_dec T x) as [? | before]; [assumption | exfalso].
+      pose proof (advances t w x T mt ltac:(lra)). lra. }
+  exact (one_leads z s v t w T corner ms mt OE OF).
+Qed.
+
 Theorem two_shielded_vehicles : Theorem2_apart.
 Proof.
   intros k zones occupied s v t w from from' ok cov ms mt all u lo occ.
@@ -129,7 +142,7 @@ Proof.
     exact (shielded_vehicles_keep_apart k z y s v t w from from' ok la ly mir corner ms mt sh sh' sb tb u lo ins).
   - destruct sh as [(tau & c & l & b & since & -> & st & grid & obey & true & keeps & seen & judges)].
     assert (lo' : tau since <= u) by (apply Rle_trans with (2 := lo); apply Rmax_l).
-    destruct (between_calls k tau ok grid since st u lo') as (i & hi & hu).
+    destruct (between_calls k tau ok grid since u lo') as (i & hi & hu).
     apply (judged_safe k s v tau c l) with (t := t) (w := w) (b := b) (z := z) (claimed := fun _ => False) (since := since)
       (i := i) (u := u); auto; try (rewrite la; discriminate).
     intros a d _ [].

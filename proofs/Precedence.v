@@ -54,6 +54,39 @@ Proof.
   lra.
 Qed.
 
+(* A vehicle that is at rest, up to r, at two calls that follow each other creeps little between them: at worst it accelerates at
+   â and then brakes at b̂. *)
+Lemma creeps_between place t1 t2 :
+  motion place v -> from <= t1 <= t2 -> t2 - t1 <= period k + 2 * jitter k -> v t1 <= r -> v t2 <= r ->
+  place t2 - place t1 <= (t2 - t1) * (r + dip / 2).
+Proof.
+  intros m [lo le] span v1 v2.
+  assert (a0 : 0 < other_acceleration k) by (destruct ok; lra).
+  assert (b0 : 0 < other_braking k) by (destruct ok; lra).
+  unfold dip. set (a := other_acceleration k) in *. set (b := other_braking k) in *. set (h := t2 - t1) in *.
+  assert (h0 : 0 <= h) by (unfold h; lra).
+  set (h1 := h * b / (a + b)). set (h2 := h * a / (a + b)).
+  assert (sum : h1 + h2 = h) by (unfold h1, h2; field; lra).
+  assert (h10 : 0 <= h1) by (unfold h1; apply Rmult_le_pos; [apply Rmult_le_pos; lra | left; apply Rinv_0_lt_compat; lra]).
+  assert (h20 : 0 <= h2) by (unfold h2; apply Rmult_le_pos; [apply Rmult_le_pos; lra | left; apply Rinv_0_lt_compat; lra]).
+  set (tm := t1 + h1). assert (tm2 : t2 - tm = h2) by (unfold tm, h in *; lra).
+  pose proof (below_line place v r a t1 tm m ltac:(unfold tm; lra)) as A.
+  specialize (A ltac:(intros u hu; pose proof (rushes k v from keeps u t1 u ltac:(lra) ltac:(lra) ltac:(lra)) as up; fold a in up;
+    pose proof (Rmin_l (v t1 + a * (u - t1)) (Rmax (other_max_speed k) (v t1))); lra)).
+  pose proof (below_line place v (r + b * h2) (- b) tm t2 m ltac:(lra)) as B.
+  specialize (B ltac:(intros u hu; pose proof (brakes k v from keeps t2 u t2 ltac:(unfold tm in hu; lra) ltac:(lra) ltac:(lra)) as down;
+    fold b in down; replace (r + b * h2 + - b * (u - tm)) with (r + b * (t2 - u)) by (rewrite <- tm2; ring); lra)).
+  rewrite tm2 in B. replace (tm - t1) with h1 in A by (unfold tm; ring).
+  assert (E : a * h1 * h1 / 2 + b * h2 * h2 / 2 = h * h / 2 * (a * b / (a + b))) by (unfold h1, h2; field; lra).
+  assert (W : h * h / 2 * (a * b / (a + b)) <= h * ((period k + 2 * jitter k) * (a * b / (a + b)) / 2)).
+  { assert (c0 : 0 <= a * b / (a + b)) by (apply Rmult_le_pos; [apply Rmult_le_pos; lra | left; apply Rinv_0_lt_compat; lra]).
+    assert (h * h * (a * b / (a + b)) <= h * (period k + 2 * jitter k) * (a * b / (a + b))); [| lra].
+    apply Rmult_le_compat_r; [exact c0 |]. apply Rmult_le_compat_l; lra. }
+  replace (h * (r + (period k + 2 * jitter k) * (a * b / (a + b)) / 2))
+    with (r * (h1 + h2) + h * ((period k + 2 * jitter k) * (a * b / (a + b)) / 2)) by (rewrite sum; ring).
+  lra.
+Qed.
+
 (* Two shields, each on its grid. *)
 Variables (p q : nat -> R).
 Hypothesis grid_p : on_grid k p.
@@ -67,6 +100,20 @@ Proof.
   intros en. pose proof (spacing k p grid_p i (m - 1)) as [L _].
   assert (0 < period k) by (destruct ok; lra). assert (0 <= jitter k) by (destruct ok; lra).
   destruct en as [[-> j0] | [-> j8]]; cbn [Nat.sub INR] in *; lra.
+Qed.
+
+(* The same for several calls. *)
+Lemma creeps_throughout place i n :
+  motion place v -> from <= p i -> (forall j, (i <= j <= i + n)%nat -> v (p j) <= r) ->
+  place (p (i + n)%nat) - place (p i) <= (p (i + n)%nat - p i) * (r + dip / 2).
+Proof.
+  intros m lo slow. induction n as [| n IH].
+  - rewrite Nat.add_0_r. lra.
+  - specialize (IH ltac:(intros; apply slow; lia)).
+    pose proof (calls_ordered k p ok grid_p i (i + n) ltac:(lia)). pose proof (calls_ordered k p ok grid_p (i + n) (i + S n) ltac:(lia)).
+    pose proof (spacing k p grid_p (i + n) 1) as [_ far]. replace (i + n + 1)%nat with (i + S n)%nat in far by lia. simpl INR in far.
+    pose proof (creeps_between place (p (i + n)%nat) (p (i + S n)%nat) m ltac:(lra) ltac:(lra)
+      (slow (i + n)%nat ltac:(lia)) (slow (i + S n)%nat ltac:(lia))). lra.
 Qed.
 
 (* Lemma 2 for several calls. *)

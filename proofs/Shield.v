@@ -8,6 +8,43 @@ Proof.
   intros le [r b]. split; intros u x y ? ? ?; [apply (r u) | apply (b u)]; lra.
 Qed.
 
+(* Time goes on with the calls. *)
+Lemma call_after k tau i u : 0 < period k -> on_grid k tau -> exists m, u <= tau (i + m)%nat.
+Proof.
+  intros p0 grid.
+  destruct (archimed ((u - tau i + 2 * jitter k) / period k)) as [A _].
+  set (y := (u - tau i + 2 * jitter k) / period k) in *.
+  exists (Z.to_nat (Z.max 0 (up y))).
+  destruct (spacing k tau grid i (Z.to_nat (Z.max 0 (up y)))) as [L _].
+  rewrite INR_IZR_INZ, Z2Nat.id in L by lia.
+  assert (IZR (up y) <= IZR (Z.max 0 (up y))) by (apply IZR_le; lia).
+  assert (E : y * period k = u - tau i + 2 * jitter k) by (unfold y; field; lra).
+  assert (y * period k <= IZR (Z.max 0 (up y)) * period k) by (apply Rmult_le_compat_r; lra).
+  lra.
+Qed.
+
+(* A call that is before a moment, and whose next one is not. *)
+Lemma call_before k tau since u : 0 < period k -> on_grid k tau -> tau since < u ->
+  exists i, (since <= i)%nat /\ tau i < u <= tau (S i).
+Proof.
+  intros p0 grid lo. destruct (call_after k tau since u p0 grid) as [m M]. induction m as [| m IH].
+  - rewrite Nat.add_0_r in M. lra.
+  - destruct (Rle_dec u (tau (since + m)%nat)) as [early | late]; [apply IH, early |].
+    exists (since + m)%nat. split; [lia |]. replace (S (since + m)) with (since + S m)%nat by lia. lra.
+Qed.
+
+(* Every moment is between two calls. *)
+Lemma between k tau since u : 0 < period k -> on_grid k tau -> tau since <= tau (S since) -> tau since <= u ->
+  exists i, (since <= i)%nat /\ tau i <= u <= tau (S i).
+Proof.
+  intros p0 grid next lo. destruct (Req_dec (tau since) u) as [<- | ne]; [exists since; split; [lia | lra] |].
+  destruct (call_before k tau since u p0 grid ltac:(lra)) as (i & hi & hu). exists i. split; [exact hi | lra].
+Qed.
+
+Lemma between_calls k tau (ok : valid k) (grid : on_grid k tau) since u : tau since <= u ->
+  exists i, (since <= i)%nat /\ tau i <= u <= tau (S i).
+Proof. apply (between k); [exact (period_pos k ok) | exact grid | apply (calls_ordered k tau ok grid); lia]. Qed.
+
 Section Zone.
 Variables (k : contract) (s v : R -> R) (tau c : nat -> R) (l : log).
 Hypothesis ok : valid k.
@@ -35,24 +72,9 @@ Proof.
   intros h. destruct i as [| j]; [lia |]. destruct (true j) as [A B]. split; [exact A | exists j; auto].
 Qed.
 
-(* Time goes on with the calls. *)
-Lemma call_after i u : exists m, u <= tau (i + m)%nat.
-Proof.
-  assert (p0 : 0 < period k) by (destruct ok; lra).
-  destruct (archimed ((u - tau i + 2 * jitter k) / period k)) as [A _].
-  set (y := (u - tau i + 2 * jitter k) / period k) in *.
-  exists (Z.to_nat (Z.max 0 (up y))).
-  destruct (spacing k tau grid i (Z.to_nat (Z.max 0 (up y)))) as [L _].
-  rewrite INR_IZR_INZ, Z2Nat.id in L by lia.
-  assert (IZR (up y) <= IZR (Z.max 0 (up y))) by (apply IZR_le; lia).
-  assert (E : y * period k = u - tau i + 2 * jitter k) by (unfold y; field; lra).
-  assert (y * period k <= IZR (Z.max 0 (up y)) * period k) by (apply Rmult_le_compat_r; lra).
-  lra.
-Qed.
-
 Lemma gentle i x y : (1 <= i)%nat -> tau i <= x -> x <= y -> v x - ego_braking k * (y - x) <= v y.
 Proof.
-  intros h lo le. destruct i as [| j]; [lia |]. destruct (call_after (S j) y) as [m M].
+  intros h lo le. destruct i as [| j]; [lia |]. destruct (call_after k tau (S j) y (period_pos k ok) grid) as [m M].
   apply (ego_brakes_at_most k v tau c ok grid obey j m); auto.
 Qed.
 
@@ -126,7 +148,7 @@ Proof.
   assert (W0 : 0 <= W <= w T).
   { pose proof (forwards t w other_moves T). unfold W. cases; lra. }
   assert (s u - t u <= s T - t T + gap); [| unfold gap in *; lra].
-  apply (stays_behind k s v t w T E (rests k d n) gap W); auto; try lra.
+  apply (stays_behind k (ego_braking k) (ego_braking k) s v t w T E (rests k d n) gap W); auto; try lra; try (destruct ok; lra).
   - apply from_T.
   - intros x y ? ? ?. apply (gentle i0); auto. lia.
   - intros. apply rest_bound. lra.
@@ -315,14 +337,6 @@ Proof.
     split; [apply Rle_trans with (tau i); [apply in_order; lia | lra] | lra].
 Qed.
 
-(* Every moment is between two calls. *)
-Lemma between_calls u : tau since <= u -> exists i, (since <= i)%nat /\ tau i <= u <= tau (S i).
-Proof.
-  intros lo. destruct (call_after since u) as [m M]. induction m as [| m IH].
-  - rewrite Nat.add_0_r in M. exists since. split; [lia |]. pose proof (in_order since (S since) ltac:(lia)). lra.
-  - destruct (Rle_dec u (tau (since + m)%nat)) as [early | late]; [apply IH, early |].
-    exists (since + m)%nat. split; [lia |]. replace (S (since + m)) with (since + S m)%nat by lia. lra.
-Qed.
 End Zone.
 
 Theorem verified_plans_keep_apart : Theorem1.
@@ -330,7 +344,7 @@ Proof.
   intros k path zones occupied s v tau c l others (ok & cov & em & grid & obey & true & keeps & judged_all) o u oo lo occ.
   destruct (cov (on o) (s u) (place o u) occ) as (z & zin & ins).
   destruct (keeps o oo) as [om c2 c3 c6 c7 a9 a11 st].
-  destruct (between_calls k tau ok grid (since o) st u lo) as (i & hi & hu).
+  destruct (between_calls k tau ok grid (since o) u lo) as (i & hi & hu).
   apply (judged_safe k s v tau c l) with (t := place o) (w := rate o) (b := view o (on o)) (z := z)
     (claimed := claims o (on o) z) (since := since o)
     (i := i) (u := u); auto.

@@ -82,15 +82,25 @@ Definition after (k : contract) (b : bounds) (time : R) : bounds := {|
 Definition passed (b former : bounds) : bounds := {|
   t_least := Rmax (t_least former) (t_least b); t_most := t_most b; w_least := w_least b; w_most := w_most b |}.
 
+(* D18: within two bounds at once. *)
+Definition common (b b' : bounds) : bounds := {|
+  t_least := Rmax (t_least b) (t_least b'); t_most := Rmin (t_most b) (t_most b');
+  w_least := Rmax (w_least b) (w_least b'); w_most := Rmin (w_most b) (w_most b') |}.
+
 (* What the shield may know of an other at a time: what it sees (C3), what becomes of that while the other coasts, and
-   what it remembers. *)
+   what it remembers; and what it is told of who is out of sight (A14), alone or together with what is known of it by the edge
+   of before, or from what is seen once it has emerged. *)
 Inductive known (k : contract) (t w : R -> R) (from : R) : R -> bounds -> Prop :=
   | seen u place v :
       from <= u -> place - position_error k <= t u <= place + position_error k ->
       v - speed_error k <= w u <= v + speed_error k -> known k t w from u (sensed k place v)
   | coasts u u' b : known k t w from u b -> u <= u' -> known k t w from u' (after k b (u' - u))
   | remembered u u' b former :
-      known k t w from u former -> known k t w from u' b -> u <= u' -> known k t w from u' (passed b former).
+      known k t w from u former -> known k t w from u' b -> u <= u' -> known k t w from u' (passed b former)
+  | told u place least speed_ :
+      from <= u -> least <= t u <= place -> w u <= speed_ ->
+      known k t w from u {| t_least := least; t_most := place; w_least := 0; w_most := speed_ |}
+  | both u b b' : known k t w from u b -> known k t w from u b' -> known k t w from u (common b b').
 
 (* The gap from the other to an ego ahead of it in a lane is safe: D10. *)
 Definition safe (k : contract) (z : zone) (s v t w : R) := safe_gap k w v <= s - t - lead_to z.
@@ -336,8 +346,8 @@ Definition Theorem2_apart := forall k zones occupied s v t w from from',
 
 (** * Precedence *)
 
-(* A shield at work against one other in one zone; at the calls [claimed] its vehicle has precedence. *)
-Record watches (k : contract) (z : zone) (s v t w : R -> R) (claimed : nat -> Prop)
+(* A shield at work against one other: how it judges their zone at each call is an argument. *)
+Record watches (k : contract) (judges : nat -> Prop) (s v t w : R -> R)
     (tau c : nat -> R) (l : log) (b : nat -> bounds) (since : nat) : Prop := {
   its_calls : on_grid k tau;
   its_ego : obeys k v tau c;
@@ -345,21 +355,93 @@ Record watches (k : contract) (z : zone) (s v t w : R -> R) (claimed : nat -> Pr
   its_other : keeps_contract k w (tau since);
   its_view : forall j, (since <= j)%nat -> known k t w (tau since) (tau j) (b j);
   its_start : (1 <= since)%nat;
-  its_judgement : forall i, (since <= i)%nat -> judged k l c b z claimed since i
+  its_judgement : forall i, (since <= i)%nat -> judges i
 }.
 
-(* The claim of call i at times tau is newer than that of call j of the other shield, at times tau': before it, in time for a
-   command to take effect, the other vehicle was at rest, up to r, so long after the first call without its own claim that `go`
-   would have made it faster. *)
+(* The claim of call i at times tau is newer than that of call j of the other shield, at times tau': before it, the other
+   vehicle was at rest, up to r, so long after the first call without its own claim that `go` would have made it faster, and
+   again when what was commanded then had taken effect. *)
 Definition newer (k : contract) (r : R) (tau : nat -> R) (i : nat) (tau' : nat -> R) (j : nat) (w : R -> R) :=
-  exists x, w x <= r /\ tau' (S j) + switching k + r / ego_go k < x /\ x + switching k <= tau i.
+  exists x x', w x <= r /\ w x' <= r /\ tau' (S j) + switching k + r / ego_go k < x /\ x + switching k <= x' <= tau i.
 
 (* Theorem 4 at crossings: of two shielded vehicles that take each other for one that gives way (D13), neither checking the
-   zone itself then, not both are in it, if of each two claims one is newer. P6 is the bound on the rule's braking. C7 is not
+   zone itself then, not both are in it, if of each two claims by which it is opened one is newer. P6 is the bound on the rule's braking. C7 is not
    assumed. *)
 Definition Theorem4_crossing := forall k r z y s v t w claimed tau c l b since claimed' tau' c' l' b' since',
   valid k -> precedence_braking k <= ego_braking k -> 0 <= r < unheld k ->
   lane z = false -> lane y = false -> mirrored z y -> motion s v -> motion t w ->
-  watches k z s v t w claimed tau c l b since -> watches k y t w s v claimed' tau' c' l' b' since' ->
-  (forall i j, claimed i -> claimed' j -> newer k r tau i tau' j w \/ newer k r tau' j tau i v) ->
+  watches k (judged k l c b z claimed since) s v t w tau c l b since ->
+  watches k (judged k l' c' b' y claimed' since') t w s v tau' c' l' b' since' ->
+  (forall i j, (since <= i)%nat -> opened_at k b z claimed i -> (since' <= j)%nat -> opened_at k b' y claimed' j ->
+    newer k r tau i tau' j w \/ newer k r tau' j tau i v) ->
   forall u, Rmax (tau since) (tau' since') <= u -> ~ inside z (s u) (t u).
+
+(* A lane, with a rule of precedence: ego and other arrive at the arc lengths [mine] and [theirs]. *)
+Section Lane.
+Variables (k : contract) (l : log) (c : nat -> R) (b : nat -> bounds) (z : zone) (claimed : nat -> Prop) (since : nat).
+Variables (mine theirs : R).
+
+(* D8: by a plan that enters ahead, an ego that has no precedence and is not in the lane yet enters before the other, however
+   hard it accelerates, can arrive. *)
+Definition enters_first (i : nat) :=
+  enters_at k l c b z i /\
+  (claimed i \/ s_in z <= own_least (ego_at l i) \/
+   let target := s_in z - own_s (ego_at l i) + 3 * position_error k in
+   let clears := fst (clearing k (least (departs_at k l c i)) target) in
+   0 <= clears_before k (theirs - t_most (b i)) (rush k (w_most (b i)) clears)).
+
+(* D12. *)
+Definition verified_in_lane (i : nat) :=
+  stops k (departs_at k l c i) (goes l i) (stop_limit k z (ego_at l i)) \/
+  stops k (departs_at k l c i) (goes l i) (behind k z (ego_at l i) (b i)) \/ enters_first i.
+
+(* D13: a lane is opened once the ego has arrived, if the other can stop half of slack before it. *)
+Definition opened_in_lane (i : nat) :=
+  claimed i /\ mine <= own_least (ego_at l i) /\
+  rest_of {| distance := t_most (b i); speed := w_most (b i) |} (precedence_braking k) <= t_in z - slack k / 2.
+
+Definition judged_in_lane (i : nat) :=
+  over l b z i \/ settled k l c b z since i \/ in_force k l c since verified_in_lane i \/ in_force k l c since opened_in_lane i.
+End Lane.
+
+(* P7: who is no faster than one that may be taken for one at rest, and brakes at b, stops no later than a follower that keeps
+   its distance: one that reacts after ρ and brakes at b̂_f. *)
+Definition creeps_behind (k : contract) (r : R) :=
+  r * r / (ego_braking k + ego_braking k)
+  <= r * follower_reaction k + r * r / (follower_braking k + follower_braking k) + slack k.
+
+(* Two shielded vehicles with a rule of precedence, which watch each other since before either was in the lane, never are in it
+   together. None of C6, C7 and A9 is assumed. P7 and how lanes are judged are arguments, so that Ahead.v can leave something
+   out. *)
+Definition Lane_guarantee (creeps : contract -> R -> Prop)
+    (judges : contract -> log -> (nat -> R) -> (nat -> bounds) -> zone -> (nat -> Prop) -> nat -> R -> R -> nat -> Prop) :=
+  forall k r z y s v t w mine theirs claimed tau c l b since claimed' tau' c' l' b' since',
+  valid k -> precedence_braking k <= ego_braking k -> 0 <= r < unheld k -> creeps k r ->
+  lane z = true -> lane y = true -> mirrored z y -> lead_from z < s_in z - t_in z < lead_to z ->
+  motion s v -> motion t w ->
+  watches k (judges k l c b z claimed since mine theirs) s v t w tau c l b since ->
+  watches k (judges k l' c' b' y claimed' since' theirs mine) t w s v tau' c' l' b' since' ->
+  (forall i j, claimed i -> claimed' j -> newer k r tau i tau' j w \/ newer k r tau' j tau i v) ->
+  s (Rmax (tau since) (tau' since')) < s_in z -> t (Rmax (tau since) (tau' since')) < t_in z ->
+  forall u, Rmax (tau since) (tau' since') <= u -> ~ inside z (s u) (t u).
+
+(* Theorem 4 in lanes. *)
+Definition Theorem4_lane := Lane_guarantee creeps_behind judged_in_lane.
+
+(* Theorem 4: two shielded vehicles with a rule of precedence, each of whose zones is one of the two kinds, keep apart. *)
+Definition Theorem4 := forall k r zones occupied s v t w mine theirs tau c l b since tau' c' l' b' since',
+  valid k -> precedence_braking k <= ego_braking k -> 0 <= r < unheld k -> creeps_behind k r ->
+  cover zones occupied -> motion s v -> motion t w ->
+  (forall z, In z zones -> exists y claimed claimed', lane y = lane z /\ mirrored z y /\
+    if lane z then
+      lead_from z < s_in z - t_in z < lead_to z /\
+      s (Rmax (tau since) (tau' since')) < s_in z /\ t (Rmax (tau since) (tau' since')) < t_in z /\
+      watches k (judged_in_lane k l c b z claimed since mine theirs) s v t w tau c l b since /\
+      watches k (judged_in_lane k l' c' b' y claimed' since' theirs mine) t w s v tau' c' l' b' since' /\
+      forall i j, claimed i -> claimed' j -> newer k r tau i tau' j w \/ newer k r tau' j tau i v
+    else
+      watches k (judged k l c b z claimed since) s v t w tau c l b since /\
+      watches k (judged k l' c' b' y claimed' since') t w s v tau' c' l' b' since' /\
+      forall i j, (since <= i)%nat -> opened_at k b z claimed i -> (since' <= j)%nat -> opened_at k b' y claimed' j ->
+        newer k r tau i tau' j w \/ newer k r tau' j tau i v) ->
+  forall u, Rmax (tau since) (tau' since') <= u -> ~ occupied (s u) (t u).

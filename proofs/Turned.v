@@ -14,7 +14,7 @@ Proof.
   split; intros u x y ? ? ?; unfold k, round; cbn [other_acceleration other_max_speed other_braking]; unfold v; cases; lra.
 Qed.
 
-Lemma both_watch : watches k meeting s v s v (fun i => i = 1%nat) INR c the_log the_bounds 1.
+Lemma both_watch : watches k (judged k the_log c the_bounds meeting (fun i => i = 1%nat) 1) s v s v INR c the_log the_bounds 1.
 Proof.
   assert (s1 : s 1 = 0) by apply (RInt_point 1 v).
   assert (v1 : v 1 = 0) by (rewrite v_goes; lra).
@@ -32,7 +32,7 @@ Qed.
 
 Theorem newer_is_needed :
   valid k /\ precedence_braking k <= ego_braking k /\ lane meeting = false /\ mirrored meeting meeting /\ motion s v /\
-  watches k meeting s v s v (fun i => i = 1%nat) INR c the_log the_bounds 1 /\ inside meeting (s (7 / 2)) (s (7 / 2)).
+  watches k (judged k the_log c the_bounds meeting (fun i => i = 1%nat) 1) s v s v INR c the_log the_bounds 1 /\ inside meeting (s (7 / 2)) (s (7 / 2)).
 Proof.
   assert (s1 : s 1 = 0) by apply (RInt_point 1 v).
   pose proof (above_line s v 0 1 1 (7 / 2) ego_moves ltac:(lra)) as A.

@@ -128,7 +128,8 @@ impl PairMemory {
         zones: impl Iterator<Item = &'z Zone>,
         s: f32,
     ) {
-        let periods = R::grace(contract);
+        // One period more than between turns: the other may have counted on the zone until the ego was in it.
+        let periods = R::grace(contract).saturating_add(1);
         if ego.standstill.surely.min(self.other.standstill.surely) < periods {
             return;
         }

@@ -90,7 +90,10 @@ pub(super) const fn first_fault(contract: &Contract) -> Option<ContractError> {
         (None, 0) => None,
         (None, _) => match first(&of_turns(contract, rule)) {
             Some(error) => Some(error),
-            None => unseen(contract),
+            None => match unseen(contract) {
+                Some(error) => Some(error),
+                None => creeps(contract),
+            },
         },
     }
 }
@@ -250,10 +253,15 @@ const fn held(contract: &Contract) -> f32 {
         + (strongest(contract, ego.go) + disturbed) * contract.period
 }
 
+/// The fastest (m/s) that one may be that is taken for one at rest.
+const fn slow(contract: &Contract) -> f32 {
+    contract.rest_speed() + 2.0 * contract.speed_error
+}
+
 /// One that goes is seen: it gets faster, in spite of its limit, than one that may be taken for one at rest.
 const fn unseen(contract: &Contract) -> Option<ContractError> {
-    let (ego, error) = (contract.ego, contract.speed_error);
-    let rest = contract.rest_speed() + 2.0 * error;
+    let ego = contract.ego;
+    let rest = slow(contract);
     let held = held(contract);
     if rest < ego.max_speed - held {
         return None;
@@ -263,6 +271,23 @@ const fn unseen(contract: &Contract) -> Option<ContractError> {
         value: ego.max_speed,
         range: above(rest + held, contract.other.max_speed),
         why: ": who takes turns must be seen to go, in spite of speed_error",
+    })
+}
+
+/// One that is taken for one at rest still brakes by a plan that is past, behind one that enters a lane ahead of it: it stops
+/// no later than a follower does that reacts and brakes as the contract says.
+const fn creeps(contract: &Contract) -> Option<ContractError> {
+    let (follower, rest) = (contract.follower, slow(contract));
+    let own = rest / (2.0 * weakest(contract, contract.ego.braking));
+    let least = own - rest / (2.0 * follower.braking) - contract.slack / rest;
+    if follower.reaction >= least {
+        return None;
+    }
+    Some(ContractError {
+        field: "follower.reaction",
+        value: follower.reaction,
+        range: from(least, 10.0),
+        why: ": who takes turns stops behind one ahead as a follower does, in spite of speed_error",
     })
 }
 
@@ -432,6 +457,23 @@ mod tests {
             by(|c, _| c.ego.max_speed = 6.67),
         );
         assert_eq!(fault(by(|c, _| c.ego.max_speed = 6.68)), None);
+        // 1.025 m/s may be taken for rest; the ego brakes at 3.25 m/s² at least, a follower at 4.
+        named(
+            "follower.reaction",
+            false,
+            [0.010_055, 10.0],
+            by(|c, _| (c.speed_error, c.follower.reaction) = (0.5, 0.01)),
+        );
+        assert_eq!(
+            fault(by(
+                |c, _| (c.speed_error, c.follower.reaction) = (0.5, 0.011)
+            )),
+            None
+        );
+        let without_turns = by(|c, rule| {
+            (c.speed_error, c.follower.reaction, rule.patience) = (0.5, 0.0, 0);
+        });
+        assert_eq!(fault(without_turns), None);
     }
 
     #[test]

@@ -216,7 +216,7 @@ fn a_set_has_the_zones_of_its_bits() {
     );
 }
 
-/// It has stood for four periods, in each of which it may have crept 0.384 m/s.
+/// It has stood for five periods, one more than the grace, in each of which it may have crept 0.384 m/s.
 #[test]
 fn who_stands_in_a_crossing_holds_it() {
     use crate::junction::ConflictKind;
@@ -249,12 +249,12 @@ fn who_stands_in_a_crossing_holds_it() {
         };
         pair.claims(&contract, Precedence::ALL_WAY_STOP, right, &ego)
     };
-    let crept = 0.4 * (0.075 + 0.2 + 0.5 * 0.1 * 24.0 / 11.0) + 0.3;
-    assert_eq!(held(50.0 + crept - 0.002, [4, 4]), 0);
-    assert_eq!(held(50.0 + crept + 0.002, [4, 4]), 0b010);
-    assert_eq!(held(56.0, [4, 4]), 0b110);
-    assert_eq!(held(57.99, [9, 4]), 0b110);
-    assert_eq!(held(58.0, [4, 9]), 0b100);
-    assert_eq!(held(62.0, [4, 4]), 0);
-    assert_eq!([held(56.0, [3, 4]), held(56.0, [4, 3])], [0, 0]);
+    let crept = 0.5 * (0.075 + 0.2 + 0.5 * 0.1 * 24.0 / 11.0) + 0.3;
+    assert_eq!(held(50.0 + crept - 0.002, [5, 5]), 0);
+    assert_eq!(held(50.0 + crept + 0.002, [5, 5]), 0b010);
+    assert_eq!(held(56.0, [5, 5]), 0b110);
+    assert_eq!(held(57.99, [9, 5]), 0b110);
+    assert_eq!(held(58.0, [5, 9]), 0b100);
+    assert_eq!(held(62.0, [5, 5]), 0);
+    assert_eq!([held(56.0, [4, 5]), held(56.0, [5, 4])], [0, 0]);
 }
