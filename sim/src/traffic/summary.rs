@@ -40,6 +40,8 @@ pub struct Summary {
     pub collisions: usize,
     /// Of these, those in which the driven one stood or was hit from behind.
     pub struck: usize,
+    /// Of the collisions, those of two that were driven.
+    pub both_driven: usize,
     /// Pairs of others that touched.
     pub others_touched: usize,
     /// Vehicles that were left out, because their way is no path of a junction.
@@ -100,6 +102,7 @@ impl Summary {
             longest_wait_s: most(&|ride| ride.wait),
             collisions: collisions().count(),
             struck: collisions().filter(|collision| collision.struck).count(),
+            both_driven: collisions().filter(|collision| collision.both).count(),
             others_touched: outcomes.iter().map(|it| it.others_touched).sum(),
             left_out: outcomes.iter().map(|it| it.left_out).sum(),
             hard_brakes_per_km: (kilometres > 0.0)
