@@ -407,6 +407,25 @@ mod tests {
         assert_eq!(rested(RestState::Perhaps), [u16::MAX, 0]);
     }
 
+    proptest::proptest! {
+        /// So that where somebody is need be noted only once for all periods without a call.
+        #[test]
+        fn a_place_that_is_noted_again_changes_nothing(
+            places in proptest::collection::vec((0.0_f32..80.0, 0.0_f32..2.0), 1..8),
+        ) {
+            let mut presence = Presence::default();
+            for (i, (s, error)) in (1_u64..).zip(places) {
+                let (s, now) = (Some(span(s - error, s + error)), Instant::from_millis(100 * i));
+                let rule = Precedence::ALL_WAY_STOP;
+                let mut note = || {
+                    let arrived = presence.arrive((&Contract::ALL_WAY_STOP, rule), 50.0, s, now);
+                    (arrived, presence)
+                };
+                proptest::prop_assert_eq!(note(), note());
+            }
+        }
+    }
+
     #[test]
     fn one_that_is_not_seen_has_arrived_if_it_had_before() {
         let unseen = Sighting {
