@@ -19,8 +19,8 @@
 use super::kernel::{add_scaled, add_scaled_4, dot};
 use super::objective::MARGIN;
 use super::propagation::{NeuronBounds, Phase, Prepared, PreparedLayer, Weights};
-use super::refinement::Refinement;
 use super::relaxation::Lines;
+use super::side::{Choice, Refinement};
 use cede_nnv_check::rounding::{SPARE, gamma, underflow};
 use cede_nnv_check::{Activation, Halfspace, InputBox, Network};
 use std::collections::HashMap;
@@ -179,17 +179,6 @@ impl Row<'_> {
             Row::Sparse(row) => row.iter().map(|&(j, w)| w * values[j as usize]).sum(),
         }
     }
-}
-
-/// The choices that a bound leaves.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Choice {
-    /// Lower slope of every neuron.
-    pub(super) slopes: Vec<f64>,
-    /// Of the assumed phases.
-    pub(super) multipliers: Vec<f64>,
-    /// Of the atoms of one conjunction.
-    pub(super) weights: Vec<f64>,
 }
 
 /// A bound, and what it would be without rounding errors.

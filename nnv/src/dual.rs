@@ -1,8 +1,9 @@
 //! The best bound of a form on a region: ascent over the choices that a [pass](super::backward)
 //! leaves, by Adam (Kingma and Ba 2015), as α,β-CROWN does (Xu et al. 2021, Wang et al. 2021).
 
-use super::backward::{Choice, Frame, Least, Pass};
+use super::backward::{Frame, Least, Pass};
 use super::propagation::{NeuronBounds, Phase, Unbounded, in_time};
+use super::side::Choice;
 use cede_nnv_check::proof::{Refutation, Tightening};
 use cede_nnv_check::{Activation, InputBox};
 use std::ops::Range;

@@ -16,6 +16,7 @@ mod propagation;
 mod refinement;
 mod relaxation;
 mod search;
+mod side;
 #[cfg(test)]
 mod tests;
 mod watchdog;

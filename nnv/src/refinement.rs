@@ -1,37 +1,13 @@
 //! Bounds of the neurons on a part of a query's box, each side by the best choice of slopes and
 //! multipliers: far tighter than one pass each, and far dearer.
 
-use super::backward::{Choice, Frame};
+use super::backward::Frame;
 use super::dual::{Dual, Effort, Part};
 use super::propagation::{NeuronBounds, Phase, Unbounded, is_unstable};
-use cede_nnv_check::proof::Tightening;
+use super::side::{Refinement, Side};
 use cede_nnv_check::{Activation, InputBox};
 use rayon::prelude::*;
-use std::ops::Range;
 use std::time::Instant;
-
-/// One side of a neuron's range.
-pub(super) struct Side {
-    pub(super) neuron: usize,
-    pub(super) upper: bool,
-    /// What bounds it best.
-    pub(super) choice: Choice,
-    /// The record of that, if it is better than what was known.
-    pub(super) record: Option<Tightening>,
-    /// What the relaxation of each unstable neuron before may cost it.
-    costs: Vec<(usize, f64)>,
-}
-
-/// What a refinement leaves.
-#[derive(Default)]
-pub(super) struct Refinement {
-    /// The sides of the neurons that were unstable, layer by layer.
-    pub(super) sides: Vec<Side>,
-    /// The neurons of the layer behind which it was not worth going on.
-    pub(super) loose: Option<Range<usize>>,
-    /// Whether the bounds contradict each other.
-    pub(super) empty: bool,
-}
 
 /// Passes for a side from the choice that is best on the whole box, and without one.
 const AGAIN: Effort = Effort::again(4);

@@ -1,6 +1,7 @@
 //! The accelerations among which the shield chooses.
 
 use super::contract::{Contract, Ego};
+use crate::plan::Plan;
 use crate::real::Real;
 
 /// Accelerations of the grid, from full braking to full acceleration.
@@ -46,6 +47,15 @@ pub fn allowed(ego: &Ego, most: f32, acceleration: f32) -> f32 {
         acceleration
     } else {
         -ego.braking
+    }
+}
+
+/// The next command (m/s²) of a plan.
+pub(super) const fn next(contract: &Contract, plan: Plan) -> f32 {
+    if plan.go > 0 {
+        contract.ego.go
+    } else {
+        -contract.ego.braking
     }
 }
 

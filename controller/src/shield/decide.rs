@@ -1,8 +1,7 @@
 //! Where the shield says yes or no to a proposal, and what it does instead.
 
 use super::Shield;
-use super::choice::{allowed, nearest};
-use super::contract::Contract;
+use super::choice::{allowed, nearest, next};
 use super::hazard::{Passage, Who};
 use super::hazards::Hazards;
 use super::rules::Rules;
@@ -11,7 +10,6 @@ use super::verified::Verified;
 use crate::decision::{Action, Cause, Decision, Intervention};
 use crate::fault::Fault;
 use crate::instant::Instant;
-use crate::plan::Plan;
 
 impl<const N: usize, R: Rules> Shield<'_, N, R> {
     /// Yes to `proposal` (m/s²) if some plan is safe after it. Otherwise the nearest acceleration after which one is; otherwise
@@ -104,14 +102,5 @@ impl<const N: usize, R: Rules> Shield<'_, N, R> {
         };
         self.memory.shorten(R::tail);
         allowed(&contract.ego, most, next(contract, plan))
-    }
-}
-
-/// The next command (m/s²) of a plan.
-pub(super) const fn next(contract: &Contract, plan: Plan) -> f32 {
-    if plan.go > 0 {
-        contract.ego.go
-    } else {
-        -contract.ego.braking
     }
 }

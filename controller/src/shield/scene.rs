@@ -1,9 +1,8 @@
 //! What a decision is made of, once the observation is noted, and which plan is best there.
 
 use super::actuation::Inherited;
-use super::choice::{allowed, most};
+use super::choice::{allowed, most, next};
 use super::contract::Contract;
-use super::decide::next;
 use super::hazard::{Hazard, Passage};
 use super::hazards::Hazards;
 use super::margin::Going;

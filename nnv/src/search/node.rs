@@ -1,8 +1,8 @@
 //! A region of the search, and how it is cut in two.
 
-use crate::backward::Choice;
 use crate::dual::Part;
 use crate::propagation::{NeuronBounds, Phase};
+use crate::side::Choice;
 use cede_nnv_check::InputBox;
 use cede_nnv_check::proof::Split;
 use std::sync::Arc;

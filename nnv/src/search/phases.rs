@@ -3,10 +3,11 @@
 
 use super::node::{split_pairs, split_phase};
 use super::{Late, Node, Searcher, Step};
-use crate::backward::{Choice, Frame, Least};
+use crate::backward::{Frame, Least};
 use crate::dual::Effort;
 use crate::propagation::is_unstable;
 use crate::relaxation::Lines;
+use crate::side::Choice;
 use cede_nnv_check::proof::{Cell, Split};
 use std::sync::Arc;
 

@@ -239,7 +239,7 @@ fn carry_out(contract: Contract, drivetrain: Drivetrain, case: Case) -> Result<(
         if plan.go == 0 && plant.v == 0.0 && plant.a <= 0.0 {
             break;
         }
-        plant.command(super::super::decide::next(&contract, plan));
+        plant.command(super::super::choice::next(&contract, plan));
         plan = plan.tail();
     }
     prop_assert!(
