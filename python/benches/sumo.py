@@ -1,8 +1,13 @@
-"""The table of docs/python.md: SUMO's drivers, the shield with a plain profile, and Cede.
+"""The tables of docs/python.md: SUMO's drivers, the shield with a plain profile, and Cede.
 
-python python/benches/sumo.py [allway_stop priority …], all seven types by default
+python python/benches/sumo.py [--json FILE] [allway_stop priority …], all seven types by default
+
+The first table has a row for each junction and demand, the second one a row for each driver and share. A run takes 5 to 30
+seconds; there are 441. The file gets the summary of each run, one a line.
 """
 
+import argparse
+import json
 import pathlib
 import sys
 import tempfile
@@ -15,52 +20,89 @@ from cede.sumo import Bridge, Network, Settings
 from cede.sumo._network import TYPES
 
 DEMANDS = (100.0, 200.0, 300.0)
-SHARES = (0.5, 1.0)
+SHARES = (0.1, 0.5, 1.0)
+DRIVERS = [("sumo", 1.0), *((driver, share) for driver in ("profile", "cede") for share in SHARES)]
 SECONDS = 300.0
-SEEDS = (0, 1)
+SEEDS = (0, 1, 2)
 
 
-def main(kinds):
-    print(
-        "| junction | demand | driver | share driven | runs | arrived | delay, s | stuck "
-        "| collisions (of driven) | share without a plan | lateral, m/s² | µs |"
-    )
-    print("|---|---|---|---|---|---|---|---|---|---|---|---|")
+def main(kinds, file):
+    everything = {driver: [] for driver in DRIVERS}
+    names = [name(*driver) for driver in DRIVERS]
+    print("arrived / mean delay in s / stuck; sums over the seeds, the delay their mean\n")
+    print("| junction | vehicles/h and arm | demanded | " + " | ".join(names) + " |")
+    print("|---|---|---|" + "---|" * len(names))
     for kind in kinds:
         with tempfile.TemporaryDirectory() as folder:
             network = Network(netconvert(pathlib.Path(folder), kind))
             for demand in DEMANDS:
-                row(network, kind, demand, "sumo", 1.0)
-                for driver in ("profile", "cede"):
-                    for share in SHARES:
-                        row(network, kind, demand, driver, share)
-
-
-def row(network, kind, demand, driver, share):
-    """One row: the sums over the seeds, and the means of the rest."""
-    runs = []
-    for seed in SEEDS:
-        settings = Settings(driver=driver, share=share, time=SECONDS, seed=seed)
-        runs.append(Bridge(network, settings, demand=demand).run().summary())
-
-    def total(name):
-        return sum(run[name] for run in runs)
-
-    def mean(name):
-        known = [run[name] for run in runs if run[name] is not None]
-        return f"{sum(known) / len(known):.3g}" if known else ""
-
-    arrived = f"{total('arrived')} of {total('demanded')}"
-    counts = f"{total('stuck')} | {total('collisions')} ({total('ego_collisions')})"
-    lateral = max(run["lateral_acceleration_max"] for run in runs)
-    means = f"{mean('no_plan_share')} | {lateral:.1f} | {mean('us_per_decision')}"
-    delay = mean("mean_delay_s")
+                cells = []
+                for driver, share in DRIVERS:
+                    runs = [run(network, demand, driver, share, seed) for seed in SEEDS]
+                    everything[driver, share] += runs
+                    cells.append(cell(runs))
+                    for seed, summary in zip(SEEDS, runs):
+                        case = {"junction": kind, "demand": demand, "share": share, "seed": seed}
+                        if file:
+                            print(json.dumps({**case, **summary}), file=file, flush=True)
+                demanded = total(runs, "demanded")
+                print(f"| `{kind}` | {demand:.0f} | {demanded} | {' | '.join(cells)} |", flush=True)
     print(
-        f"| `{kind}` | {demand:.0f} | {driver} | {share:.0%} | {len(runs)} | {arrived} | {delay} "
-        f"| {counts} | {means} |",
-        flush=True,
+        "\n| driver, share | runs | arrived | stuck | collisions (of driven) | jerk RMS, m/s³ "
+        "| lateral, m/s²: greatest; runs above 3.5 | share without a plan | µs a decision |\n"
+        "|---|---|---|---|---|---|---|---|---|"
+    )
+    for driver, runs in everything.items():
+        print(f"| {name(*driver)} | {sums(runs)} |")
+
+
+def run(network, demand, driver, share, seed):
+    """The summary of one run."""
+    settings = Settings(driver=driver, share=share, time=SECONDS, seed=seed)
+    return Bridge(network, settings, demand=demand).run().summary()
+
+
+def name(driver, share):
+    """A driver's heading."""
+    return "SUMO" if driver == "sumo" else f"{driver} {share:.0%}"
+
+
+def total(runs, field):
+    return sum(run[field] for run in runs)
+
+
+def mean(runs, field):
+    known = [run[field] for run in runs if run[field] is not None]
+    return f"{sum(known) / len(known):.3g}" if known else ""
+
+
+def cell(runs):
+    """Arrived, mean delay, stuck."""
+    return f"{total(runs, 'arrived')} / {mean(runs, 'mean_delay_s')} / {total(runs, 'stuck')}"
+
+
+def sums(runs):
+    """All of one driver's runs."""
+    lateral = [run["lateral_acceleration_max"] for run in runs]
+    return " | ".join(
+        [
+            f"{len(runs)}",
+            f"{total(runs, 'arrived')} of {total(runs, 'demanded')}",
+            f"{total(runs, 'stuck')}",
+            f"{total(runs, 'collisions')} ({total(runs, 'ego_collisions')})",
+            mean(runs, "jerk_rms"),
+            f"{max(lateral):.1f}; {sum(a > 3.5 for a in lateral)}",
+            mean(runs, "no_plan_share"),
+            mean(runs, "us_per_decision"),
+        ]
     )
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:] or TYPES)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
+    parser.add_argument("kinds", nargs="*", metavar="TYPE", help=", ".join(TYPES))
+    parser.add_argument("--json", metavar="FILE", type=argparse.FileType("w"))
+    arguments = parser.parse_args()
+    main(arguments.kinds or TYPES, arguments.json)
