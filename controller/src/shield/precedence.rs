@@ -5,7 +5,7 @@
 
 use super::contract::{Contract, Precedence};
 use super::rules::Rules;
-use super::waiting::{Presence, dip};
+use super::waiting::{Presence, dip, sets_off};
 use crate::instant::micros;
 use crate::junction::zone::Zone;
 use crate::junction::{Path, PathId, Priority, RightOfWay, RouteConflict, Way};
@@ -106,6 +106,7 @@ impl PairMemory {
         ego: &Presence,
     ) -> u8 {
         match self.turn {
+            Turn::First | Turn::Ego if self.ends_soon(contract, right.patience(rule), ego) => 0,
             Turn::First => {
                 let first = match right.priority {
                     Priority::FirstCome => self.came_first(contract, rule, right.of_way, ego),
@@ -117,6 +118,20 @@ impl PairMemory {
             Turn::Ego => ALL,
             Turn::Inside(zones) => zones,
         }
+    }
+
+    /// Whether the ego still rests so shortly before what it has ends that it would be called back: not everybody would
+    /// have seen it move by then.
+    fn ends_soon(&self, contract: &Contract, patience: u16, ego: &Presence) -> bool {
+        let perhaps = ego.standstill.perhaps.min(self.other.standstill.perhaps);
+        let ends = match perhaps.checked_div(patience) {
+            None => return false, // There are no turns.
+            Some(0) => patience,
+            Some(patiences) => patience.saturating_mul(2 << patiences.ilog2()),
+        };
+        // Where others are slow to see it, most of the first turn is left to set off in.
+        let late = sets_off(contract).min(patience / 4);
+        ego.standstill.surely > 0 && perhaps.saturating_add(late) >= ends
     }
 
     /// Whoever stands in a zone while both rest has precedence there until it has left: whoever has the turn, the other

@@ -64,6 +64,17 @@ pub(super) fn grace(contract: &Contract) -> u16 {
         .saturating_add(late(contract, go))
 }
 
+/// Periods until everybody has seen one move that sets off from rest at `go`.
+pub(super) fn sets_off(contract: &Contract) -> u16 {
+    let go = weakest(contract, contract.ego.go);
+    let seen = contract.rest_speed() + 3.0 * contract.speed_error + dip(contract);
+    let periods = (seen / (go * contract.period)) as u16;
+    periods
+        .saturating_add(1)
+        .saturating_add(late(contract, go))
+        .saturating_add(calls_in_between(contract).into())
+}
+
 /// Periods, beyond the first one, until an ego that stands with its brakes applied certainly follows `go` (m/s²).
 fn late(contract: &Contract, go: f32) -> u16 {
     let stands = -hold(contract, -strongest(contract, contract.ego.emergency), go) / go;
@@ -306,6 +317,17 @@ mod tests {
     fn one_that_moves_was_seen_to_by_everybody_after_two_calls_or_three_with_jitter() {
         assert_eq!(calls_in_between(&Contract::ALL_WAY_STOP), 2);
         assert_eq!(calls_in_between(&contract(|c| c.jitter = 0.01)), 3);
+    }
+
+    #[test]
+    fn one_that_sets_off_is_seen_to_by_everybody_after_as_many_periods_as_its_speed_takes() {
+        let after = |change: fn(&mut Contract)| sets_off(&contract(change));
+        // 0.293 m/s are gained in the first period, and two calls show it.
+        assert_eq!(after(|_| {}), 1 + 2);
+        // 1.793 m/s in six; with jitter more, a response of two periods, and three calls; one of 2.5 is over in the third.
+        assert_eq!(after(|c| c.speed_error = 0.5), 6 + 2);
+        assert_eq!(after(|c| c.jitter = 0.01), 2 + 1 + 3);
+        assert_eq!(after(|c| c.latency = 0.25), 1 + 2 + 2);
     }
 
     #[test]

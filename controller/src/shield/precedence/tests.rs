@@ -89,15 +89,56 @@ fn while_both_rest_precedence_goes_round() {
     use RightOfWay::{Ego, Other, Unsettled};
     assert_eq!(
         turns(8, [Ego, Other], 3, 44),
-        "aaaaaaaaaa....bbbb....bbbbbbbbbbbb....aaaaaa"
+        "aaaaaaaa......bb......bbbbbbbbbb......aaaaaa"
     );
     // Who arrived together and rests since the same period has nothing to go by.
     assert_eq!(turns(8, [Unsettled; 2], 0, 60), ".".repeat(60));
     assert_eq!(
         turns(8, [Unsettled; 2], 3, 28),
-        "..............bbbb....bbbbbb"
+        "..............bb......bbbbbb"
     );
     assert_eq!(turns(0, [Ego, Other], 3, 30), "a".repeat(30));
+}
+
+#[test]
+fn who_rests_to_the_end_of_its_turn_does_not_set_off_any_more() {
+    use RightOfWay::{Ego, Other};
+    // The last three periods are nobody's, of what an arrival gives, 14, and of a turn, 11; with a patience of 40, all in
+    // which others might not have seen it move yet.
+    let first = |patience| turns(patience, [Ego, Other], 0, 3 * u32::from(patience));
+    let count = |said: &str, whose| said.matches(whose).count();
+    let (short, long) = (first(15), first(40));
+    assert_eq!(
+        [count(&short, "a"), count(&short, "b")],
+        [14 - 3, 11 - 3 + 12]
+    );
+    let sets_off = usize::from(sets_off(&contract(40, 5)));
+    assert_eq!(count(&long, "a"), 39 - sets_off);
+}
+
+#[test]
+fn who_has_set_off_keeps_its_turn_to_the_end() {
+    let contract = contract(8, 5);
+    let mut ego = Watcher::new(contract, RightOfWay::Ego);
+    let now = |period: u64| Instant::from_millis(1000 + 100 * period);
+    ego.call::<Sound>([Some([LINE - 40.0, 9.0]); 2], 0, now(0));
+    let mut claims = |speed, period| {
+        ego.call::<Sound>(
+            [Some([LINE, speed]), Some([LINE - 5.0, 0.0])],
+            0,
+            now(period),
+        );
+        ego.claims == ALL
+    };
+    let speeds = [0.0, 0.0, 0.0, 0.0, 0.0, 0.9, 1.2, 1.5, 1.8];
+    assert!(
+        speeds
+            .into_iter()
+            .zip(1..)
+            .all(|(speed, period)| claims(speed, period))
+    );
+    // Had it rested, it would have nothing left.
+    assert!(!turns(8, [RightOfWay::Ego, RightOfWay::Other], 0, 8).ends_with('a'));
 }
 
 #[test]

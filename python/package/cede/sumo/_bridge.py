@@ -41,6 +41,8 @@ SPARE, SHRINKS = 6.0, 2.0
 """Metres by which a plan passes whoever comes, without which a vehicle that turns does not enter:
 in the bend it is slower than the plan, which then gets tighter; and for each metre to its line as
 many more: on its way there it slows down, and the plan gets tighter already."""
+SOFT = 2.5
+"""Braking (m/s²) on the last metre to the line."""
 CREEPING, NOSE = 3.0, 2.0
 """Speed (m/s) and metres beyond its line up to which a vehicle has not really set off."""
 FREE_WAY = 1e5
@@ -392,25 +394,31 @@ class Bridge:
         tracks = [self._track(car.site, other) for other in relevant]
         known = [track for track in tracks if track is not None]
         held = {o.movement.incoming for o in relevant if _stands_in_entry(o, car.site)}
-        queues = [self._foremost(car.site, q) for lane, q in lanes.items() if lane not in held]
+        queues = [self._foremost(car, q) for lane, q in lanes.items() if lane not in held]
         return known + [track for queue in queues for track in queue]
 
-    def _foremost(self, site: Site, queue: list[Car]) -> list[Track]:
+    def _foremost(self, car: Car, queue: list[Car]) -> list[Track]:
         """Of those in one lane, whoever may take a path that nobody ahead of it may take.
 
-        Nobody behind one that stands: until that one sets off, it is in the way.
+        Nobody behind one that stands: until that one sets off, it is in the way. But the next one is
+        told if it goes after the vehicle once it arrives: the vehicle then knows that it came first.
         """
+        site = car.site
         foremost: list[Track] = []
         taken: set[int] = set()
+        stands = False
         for other in sorted(queue, key=lambda other: -other.position):
+            if stands and not _in_order(car, other):
+                break
             track = self._track(site, other)
             # A movement is the same way for all.
             ways = {path % len(site.movements) for path, _ in track.candidates} if track else set()
             if not ways <= taken:
                 foremost.append(track)
                 taken |= ways
-            if other.speed < STANDING:
+            if stands:
                 break
+            stands = other.speed < STANDING
         return foremost
 
     def _track(self, site: Site, car: Car) -> Track | None:
@@ -620,6 +628,14 @@ def _stands_in_entry(car: Car, site: Site) -> bool:
     return car.front - car.length < car.movement.stretches[1].start <= car.front
 
 
+def _in_order(car: Car, other: Car) -> bool:
+    """Whether two go in the order of their arrival."""
+    if other.shield is None:
+        return False
+    conflict = car.site.junction.conflict(car.movement.driven, other.movement.driven)
+    return conflict.priority == "first-come"
+
+
 def _crosses(car: Car, other: Car) -> bool:
     """Whether a zone that another has not left yet lies ahead of a vehicle."""
     zones = car.site.junction.conflict(car.movement.driven, other.movement.path).zones
@@ -646,7 +662,7 @@ def _blocks(car: Car, leader: Car, gap: float) -> bool:
 def _stopping(speed: float, room: float, braking: float) -> float:
     """The acceleration (m/s²) that stops in `room` metres: none before it must brake by then."""
     if room < 1.0:
-        return (0.8 * max(room, 0.0) - speed) / 0.3
+        return (math.sqrt(2 * SOFT * max(room, 0.0)) - speed) / 0.3
     needed = speed**2 / (2 * room)
     return -needed if needed > 0.8 * braking else math.inf
 
