@@ -14,14 +14,14 @@ pytest.importorskip("libsumo", reason="no SUMO (pip install 'cede[sumo]')")
 
 from cede.sumo import Bridge, Network, Settings
 from cede.sumo.__main__ import main
-from cede.sumo._bridge import Car
+from cede.sumo._bridge import Car, contract_named
 from cede.sumo._network import LATERAL, REACH
 from cede.sumo._persons import Person, Walk, nearest, zones_of
 
 ARMS = {"N": (0, 200), "S": (0, -200), "E": (200, 0), "W": (-200, 0)}
 
 
-def netconvert(folder, kind, lanes=1, more=()):
+def netconvert(folder, kind, lanes=1, more=("--no-turnarounds",)):
     """A junction of four arms."""
     program = shutil.which("netconvert", path=os.path.dirname(sys.executable))
     program = program or shutil.which("netconvert")
@@ -39,8 +39,7 @@ def netconvert(folder, kind, lanes=1, more=()):
     (folder / "n.edg.xml").write_text(f"<edges>{''.join(edges)}</edges>")
     net = folder / f"{kind}.net.xml"
     files = ["-n", folder / "n.nod.xml", "-e", folder / "n.edg.xml", "-o", net]
-    options = ["--no-turnarounds", *more]
-    subprocess.run([program, *map(str, files), *options], check=True, capture_output=True)
+    subprocess.run([program, *map(str, files), *more], check=True, capture_output=True)
     return net
 
 
@@ -50,7 +49,7 @@ def run(net, pedestrians=0.0, **settings):
     return Bridge(Network(net), settings, demand=demand, pedestrians=pedestrians).run().summary()
 
 
-CROSSINGS = ("--sidewalks.guess", "--crossings.guess")
+CROSSINGS = ("--no-turnarounds", "--sidewalks.guess", "--crossings.guess")
 
 
 def roundabout(folder):
@@ -229,6 +228,24 @@ def test_who_has_set_off_is_let_pass(tmp_path):
     assert not lets_pass(car("ego", ("NC_0", "CS_0"), 3.0, 1.0), left)
 
 
+@pytest.mark.parametrize("stops", [True, False])
+def test_a_stop_sign_is_obeyed(tmp_path, stops):
+    routes = tmp_path / "r.rou.xml"
+    routes.write_text(
+        '<routes><vehicle id="a" depart="0"><route edges="SC CN"/></vehicle></routes>'
+    )
+    net = Network(netconvert(tmp_path, "priority_stop"))
+    bridge = Bridge(net, Settings(time=40.0, stops=stops), routes=routes)
+    slowest = math.inf
+    for _ in bridge.steps():
+        for car in bridge.cars.values():
+            if car.shield is not None and abs(car.s - car.movement.line) < 2.0:
+                assert bridge.sumo.vehicle.getSpeed(car.name) == car.speed
+                slowest = min(slowest, car.speed)
+    assert (slowest < 0.1) == stops
+    assert bridge.measures.arrived == 1
+
+
 def test_who_is_behind_another_is_told_if_it_may_take_another_way(tmp_path):
     routes = tmp_path / "r.rou.xml"
     vehicle = '<vehicle id="{}" depart="{}" departSpeed="8"><route edges="{}"/></vehicle>'
@@ -374,7 +391,7 @@ def test_bad_networks_and_options_are_one_clear_exception(tmp_path):
         Network(wrong)
     with pytest.raises(cede.Error, match="no junction of a type that is driven"):
         Network(netconvert(tmp_path, "traffic_light"))
-    plain = netconvert(tmp_path, "priority", more=["--no-internal-links"])
+    plain = netconvert(tmp_path, "priority", more=["--no-turnarounds", "--no-internal-links"])
     with pytest.raises(cede.Error, match="junction C, connection .* no internal lanes"):
         Network(plain)
     net = netconvert(tmp_path, "allway_stop")
@@ -382,6 +399,18 @@ def test_bad_networks_and_options_are_one_clear_exception(tmp_path):
         run(net, share=2)
     with pytest.raises(cede.Error, match="step = 0.2 s is not the contract's period, 0.1 s"):
         run(net, step=0.2)
+    for demand in (-5.0, 0.0, math.inf, math.nan):
+        with pytest.raises(cede.Error, match=r"demand = .* is outside \[1, 100000\] an hour"):
+            Bridge(Network(net), Settings(), demand=demand).run()
+    with pytest.raises(cede.Error, match="none of: worst-case, .*, sumo$"):
+        contract_named("all-way-stp")
+    configuration = tmp_path / "x.sumocfg"
+    configuration.write_text("<configuration/>")
+    with pytest.raises(cede.Error, match="x.sumocfg: a configuration: pass the network"):
+        Network(configuration)
+    back = netconvert(tmp_path, "priority", more=())
+    with pytest.raises(cede.Error, match="--no-turnarounds"):
+        Network(back)
     with pytest.raises(cede.Error, match="no such file of routes"):
         Bridge(Network(net), Settings(), routes=tmp_path / "r.rou.xml").run()
 

@@ -44,7 +44,7 @@ def _run(args: argparse.Namespace) -> dict[str, float | int | None]:
     )
     settings.check()
     bridge = Bridge(
-        Network(args.net),
+        Network(args.net, length=args.length, width=args.width),
         settings,
         routes=args.routes,
         demand=args.demand,
@@ -113,7 +113,9 @@ def _parser() -> argparse.ArgumentParser:
         help="what is known of where others turn: what they indicate, nothing until they are "
         "inside, or everything, as by radio",
     )
-    option("--stops", choices=("on", "off"), default="off", help="whether stop signs are obeyed")
+    option("--stops", choices=("on", "off"), default="on", help="whether stop signs are obeyed")
+    option("--length", type=float, default=5.0, metavar="M", help="of the longest vehicle")
+    option("--width", type=float, default=1.8, metavar="M", help="of the widest vehicle")
     option("--step", type=float, default=0.1, metavar="S", help="the contract's period")
     option("--time", type=float, default=600.0, metavar="S", help="seconds to simulate")
     option("--seed", type=int, default=0)

@@ -9,6 +9,7 @@ import random
 import sys
 import tempfile
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -45,10 +46,14 @@ SOFT = 2.5
 """Braking (m/s²) on the last metre to the line."""
 CREEPING, NOSE = 3.0, 2.0
 """Speed (m/s) and metres beyond its line up to which a vehicle has not really set off."""
+LATE = 0.8
+"""Share of the contract's braking with which a vehicle stops that would rather go."""
 FREE_WAY = 1e5
 """Metres to spare that say that nobody is in the way."""
 ROOM = 2.0
 """Metres to the vehicle ahead beyond the junction, without which a vehicle waits before it."""
+BUSIEST = 1e5
+"""Vehicles or persons an hour and arm, at most."""
 _NOTHING = 0
 """Speed mode: nothing of SUMO's own acts on the vehicle."""
 _OWN = 31
@@ -69,7 +74,7 @@ class Settings:
     seed: int = 0
     gui: bool = False
     policy: Policy | None = None
-    stops: bool = False
+    stops: bool = True
     """Whether stop signs are obeyed; otherwise only the shield stops a vehicle."""
     intent: str = "indicated"
     """Whether others' turns are `"indicated"`, so that their indicators are believed, `"known"`, as
@@ -123,7 +128,7 @@ class Car:
     stopped: bool = False
     """Whether it has stopped where it has to."""
     tight: bool = False
-    """Whether its plan goes, with little to spare."""
+    """Whether its plan stops, or goes with little to spare."""
 
 
 @dataclass
@@ -143,11 +148,17 @@ class Bridge:
 
     def run(self) -> Measures:
         """Run to the end; the measures are returned."""
-        self.settings.check()
-        if (self.routes is None) == (self.demand is None):
-            raise Error("give either routes or a demand")
-        if self.routes is not None and self.pedestrians:
-            raise Error("pedestrians come with a demand: in a file of routes, write them there")
+        for _ in self.steps():
+            pass
+        return self.measures
+
+    def steps(self) -> Iterator[float]:
+        """Run step by step: the time (s) after each, when all vehicles have been commanded.
+
+        In between, `self.sumo` is the module `libsumo` (`traci` with a window) of the running
+        simulation, `self.cars` are its vehicles, and `self.measures` what has been counted.
+        """
+        self._check()
         with tempfile.TemporaryDirectory() as folder:
             routes = self.routes
             if routes is None:
@@ -166,13 +177,23 @@ class Bridge:
             self._start(os.fspath(routes))
             closed = self.sumo.FatalTraCIError, self.sumo.TraCIException
             try:
-                self._loop()
+                yield from self._loop()
             except closed as wrong:
                 raise Error(f"SUMO is gone after {self._now:.1f} s: {wrong}") from wrong
             finally:
                 with contextlib.suppress(*closed):
                     self.sumo.close()
-        return self.measures
+
+    def _check(self) -> None:
+        self.settings.check()
+        if (self.routes is None) == (self.demand is None):
+            raise Error("give either routes or a demand")
+        if self.routes is not None and self.pedestrians:
+            raise Error("pedestrians come with a demand: in a file of routes, write them there")
+        for name, value in (("demand", self.demand), ("pedestrians", self.pedestrians)):
+            least = 1.0 if name == "demand" else 0.0
+            if value is not None and not least <= value <= BUSIEST:
+                raise Error(f"{name} = {value:g} is outside [{least:g}, {BUSIEST:g}] an hour")
 
     def _start(self, routes: str) -> None:
         if self.settings.gui:
@@ -207,7 +228,7 @@ class Bridge:
         except Exception as wrong:
             raise Error(f"SUMO does not start: {wrong}") from wrong
 
-    def _loop(self) -> None:
+    def _loop(self) -> Iterator[float]:
         self.cars: dict[str, Car] = {}
         self.persons: dict[str, Person] = {}
         fastest = self.network.fastest
@@ -225,6 +246,7 @@ class Bridge:
             self._drive_all()
             if self.measures.decisions > decisions:
                 self.measures.seconds += time.process_time() - began
+            yield self._now
         self._finish()
 
     # What has happened since the last step.
@@ -294,7 +316,8 @@ class Bridge:
         if length > self.network.length or width > self.network.width:
             raise Error(
                 f"vehicle {name} is {length} m × {width} m: the junctions are prepared for "
-                f"{self.network.length} m × {self.network.width} m"
+                f"{self.network.length} m × {self.network.width} m "
+                "(--length and --width, or those of Network)"
             )
         chosen = self._random.random() < settings.share
         if settings.ego is not None:
@@ -400,8 +423,8 @@ class Bridge:
     def _foremost(self, car: Car, queue: list[Car]) -> list[Track]:
         """Of those in one lane, whoever may take a path that nobody ahead of it may take.
 
-        Nobody behind one that stands: until that one sets off, it is in the way. But the next one is
-        told if it goes after the vehicle once it arrives: the vehicle then knows that it came first.
+        Nobody behind one that stands: until that one sets off, it is in the way. But the next one
+        is told if it goes after the vehicle once it arrives, which then knows that it came first.
         """
         site = car.site
         foremost: list[Track] = []
@@ -526,12 +549,12 @@ class Bridge:
 
     @staticmethod
     def _judge(car: Car, decision: Any) -> None:
-        """Note whether the plan has too little to spare; until another one goes, or it stands."""
+        """Note whether the plan stops, or has too little to spare; not of one that stands."""
         if decision.plan:
             short = max(0.0, car.movement.line - car.s)
             car.tight = decision.margin < SPARE + SHRINKS * short
-        elif car.speed < STANDING or decision.margin > FREE_WAY:
-            car.tight = False
+        else:
+            car.tight = car.speed >= STANDING and decision.margin < FREE_WAY
 
     def _command(self, car: Car, speed: float) -> None:
         """Have the centre of the vehicle as fast as this (m/s) at the end of the step."""
@@ -570,13 +593,8 @@ class Bridge:
             short = movement.line - car.s
             car.stopped = car.speed < STANDING and short < AT_LINE
             wanted = min(wanted, _stopping(car.speed, short - 0.2, braking))
-        stop = _stopping(car.speed, movement.line - car.s, braking)
-        if car.tight and movement.direction != "straight" and car.s <= movement.line:
-            # Where it cannot stop any more, to go is better than to go late.
-            room = movement.line + NOSE - car.s
-            if car.speed**2 < 2 * room * self._contract.ego_braking:
-                wanted = min(wanted, stop)
-        if self._lets_pass(car):
+        stop = self._stop(car)
+        if self._waits(car) or self._lets_pass(car):
             wanted = min(wanted, stop)
         leader = self.sumo.vehicle.getLeader(car.name, 50.0)
         other = self.cars.get(leader[0]) if leader else None
@@ -586,6 +604,21 @@ class Bridge:
         if _blocks(car, other, leader[1]):
             wanted = min(wanted, stop)
         return min(wanted, self._behind(car, other, leader[1]))
+
+    def _stop(self, car: Car) -> float:
+        """The acceleration (m/s²) that stops at the line, as late as the shield lets it."""
+        return _stopping(car.speed, car.movement.line - car.s, LATE * self._contract.ego_braking)
+
+    def _waits(self, car: Car) -> bool:
+        """Whether its plan has too little to spare in the bend, if it goes, and it can still stop.
+
+        Where it cannot any more, to go is better than to go late.
+        """
+        movement = car.movement
+        if not car.tight or movement.direction == "straight" or car.s > movement.line:
+            return False
+        room = movement.line + NOSE - car.s
+        return car.speed**2 < 2 * room * self._contract.ego_braking
 
     def _lets_pass(self, car: Car) -> bool:
         """Whether it hardly moves yet, and one of SUMO's drivers has set off across its way.
@@ -683,5 +716,8 @@ def contract_named(name: str, fastest: float | None = None) -> Contract:
         if fastest is not None:
             drives |= {"ego_max_speed": fastest, "other_max_speed": fastest}
         return Contract("all-way-stop", **drives, precedence=queues, **errors)
-    known = Contract(name)
+    try:
+        known = Contract(name)
+    except Error as wrong:
+        raise Error(f"{wrong}, sumo") from None
     return Contract(name, **{field: max(getattr(known, field), errors[field]) for field in errors})

@@ -245,7 +245,7 @@ class Network:
             try:
                 paths.append(builder.path(_simplified(way.centre), **size, **rules))
             except Error as wrong:
-                raise self._wrong(node, connection, wrong) from None
+                raise self._wrong(node, connection, f"{wrong}{_turnaround(connection)}") from None
         driven = [builder.variant(p, **size, line=way.line) for p, way in zip(paths, ways)]
         crossings = [self._crossing(builder, edge) for edge in crossed]
         _tell_rights(builder, node, connections, (paths, driven))
@@ -339,6 +339,10 @@ def _read(file: str) -> Any:
         raise Error("cede.sumo needs SUMO: pip install 'cede[sumo]'") from missing
     if not os.path.isfile(file):
         raise Error(f"{file}: no such network")
+    if file.endswith(".sumocfg"):
+        raise Error(
+            f"{file}: a configuration: pass the network and the routes (--routes) that it names"
+        )
     try:
         return sumolib.net.readNet(file, withInternal=True)
     except Exception as wrong:
@@ -401,6 +405,12 @@ def _forbids(node: Any, first: Any, second: Any) -> bool:
     except KeyError:
         # Nothing is regulated here.
         return False
+
+
+def _turnaround(connection: Any) -> str:
+    """What to do about a connection that turns back."""
+    back = connection.getDirection() == "t"
+    return "; build the network without turnarounds (--no-turnarounds)" if back else ""
 
 
 def _is_internal(name: str) -> bool:
