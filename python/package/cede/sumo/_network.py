@@ -245,14 +245,15 @@ class Network:
             try:
                 paths.append(builder.path(_simplified(way.centre), **size, **rules))
             except Error as wrong:
-                raise self._wrong(node, connection, f"{wrong}{_turnaround(connection)}") from None
+                raise self._wrong(node, connection, wrong) from None
         driven = [builder.variant(p, **size, line=way.line) for p, way in zip(paths, ways)]
         crossings = [self._crossing(builder, edge) for edge in crossed]
         _tell_rights(builder, node, connections, (paths, driven))
         try:
             junction = builder.build()
         except Error as wrong:
-            raise Error(f"{self.file}: junction {node.getID()}: {wrong}") from None
+            mend = _without_turnarounds(connections)
+            raise Error(f"{self.file}: junction {node.getID()}: {wrong}{mend}") from None
         each = zip(paths, driven, connections, ways)
         movements = [_movement(*one, self.braking) for one in each]
         site = Site(node.getID(), node.getType(), junction, movements, {}, crossings)
@@ -407,9 +408,9 @@ def _forbids(node: Any, first: Any, second: Any) -> bool:
         return False
 
 
-def _turnaround(connection: Any) -> str:
-    """What to do about a connection that turns back."""
-    back = connection.getDirection() == "t"
+def _without_turnarounds(connections: list[Any]) -> str:
+    """What to do where some turn back, and nothing where none does."""
+    back = any(connection.getDirection() == "t" for connection in connections)
     return "; build the network without turnarounds (--no-turnarounds)" if back else ""
 
 
