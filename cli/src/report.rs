@@ -4,6 +4,7 @@
 //! without data.
 
 mod around;
+mod called;
 mod cases;
 mod digits;
 mod gallery;
@@ -12,12 +13,13 @@ mod replayed;
 mod sweep;
 mod why;
 
+pub(crate) use called::called;
 pub(crate) use why::{Class, words};
 
 use crate::failure::Failure;
 use crate::plural::Count;
 use cede_controller::Contract;
-use cede_data::{Dataset, Encounter, EncounterId, Role, Split, output};
+use cede_data::{Dataset, Encounter, EncounterId, Split, output};
 use cede_sim::evaluate::{Drive, TableRow};
 use cede_sim::transparency;
 use cede_train::run::curve::Point;
@@ -99,8 +101,7 @@ impl Report {
         for drive in drives {
             let name = match drive.ego {
                 None => driver.clone(),
-                Some(Role::Left) => format!("{driver} as left-turner"),
-                Some(Role::Other) => format!("{driver} as other"),
+                Some(role) => format!("{driver} as {}", called(drive.encounter, role)),
             };
             self.gallery.add(&name, drive);
             if let Some(&place) = self.chosen.get(&drive.encounter.id) {

@@ -7,6 +7,8 @@ use std::path::Path;
 
 /// Default site of the recordings.
 const SITE: &str = "EP0";
+/// The mend where there are no encounters.
+const INSPECT: &str = "see what is there with `cede data inspect`, or name another folder or site";
 /// Default number of synthetic encounters.
 const ENCOUNTERS: usize = 1000;
 
@@ -16,8 +18,9 @@ pub(crate) struct Source {
     /// Folder of recordings, a CommonRoad scenario (.xml) or a folder of them, or `synthetic`: the embedded generator
     #[arg(long, value_name = "DIR|synthetic", value_parser = NonEmptyStringValueParser::new())]
     pub(crate) data: String,
-    /// Sites of the recordings, separated by commas: `EP0`, `MA`, the name of a folder, or the path of a
-    /// site description; `all`: every folder of recordings in DIR [default: EP0]. Scenarios are sites of their own
+    /// Sites of the recordings, separated by commas: `EP0`, `MA`, the name of a folder (described by NAME.toml beside
+    /// it), or the path of a site description; `all`: every folder of recordings in DIR [default: EP0]. Scenarios are
+    /// sites of their own
     #[arg(long, value_delimiter = ',', value_name = "NAME[,NAME…]|all", value_parser = NonEmptyStringValueParser::new())]
     site: Vec<String>,
     /// Number of synthetic encounters, at least [default: 1000]
@@ -48,13 +51,13 @@ impl Source {
         }
         let dir = Path::new(&self.data);
         let names = match self.site.as_slice() {
-            [all] if all == "all" => Dataset::sites(dir)?,
+            _ if self.is_all() => Dataset::sites(dir)?,
             [] => vec![SITE.to_owned()],
             names => names.to_vec(),
         };
         let mut sites: Vec<Dataset> = Vec::new();
         for name in names {
-            let dataset = Dataset::load(dir, name.trim())?;
+            let dataset = recorded(dir, name.trim())?;
             if sites
                 .iter()
                 .all(|known| known.site.name != dataset.site.name)
@@ -65,7 +68,32 @@ impl Source {
         Ok(sites)
     }
 
-    /// The same with the seed from `option`, which only synthetic encounters use; without it from `default`.
+    /// Those of `sites` that have encounters: all that are named. Of `--site all`, those without are left out, and stderr
+    /// says so.
+    ///
+    /// # Errors
+    /// A site that is named has no encounters, or none of all has.
+    pub(crate) fn occupied(&self, sites: Vec<Dataset>) -> Result<Vec<Dataset>, Failure> {
+        if !self.is_all() {
+            sites.iter().try_for_each(not_empty)?;
+            return Ok(sites);
+        }
+        let (occupied, empty): (Vec<_>, Vec<_>) = sites
+            .into_iter()
+            .partition(|dataset| !dataset.encounters.is_empty());
+        for dataset in empty {
+            note!("left out: site {} has no encounters", dataset.site.name);
+        }
+        if occupied.is_empty() {
+            return Err(Failure::input(
+                format!("no encounters at any site in {}", self.data),
+                INSPECT,
+            ));
+        }
+        Ok(occupied)
+    }
+
+    /// The same as [`Source::load`], with the seed from `option`, which only synthetic encounters use; without it from `default`.
     ///
     /// # Errors
     /// As [`Source::load`].
@@ -106,7 +134,12 @@ impl Source {
 
     /// Whether several sites are named.
     pub(crate) fn is_several(&self) -> bool {
-        self.site.len() > 1 || self.site.iter().any(|site| site == "all")
+        self.site.len() > 1 || self.is_all()
+    }
+
+    /// Whether the sites are all those in the folder.
+    pub(crate) fn is_all(&self) -> bool {
+        self.site == ["all"]
     }
 
     /// The sites of the recordings, as they are named on the command line.
@@ -122,6 +155,18 @@ impl Source {
     pub(crate) fn encounters(&self) -> usize {
         self.encounters.unwrap_or(ENCOUNTERS)
     }
+}
+
+/// The recordings of `site` in `dir`. If nothing describes the site, stderr says so.
+///
+/// # Errors
+/// They cannot be used.
+pub(crate) fn recorded(dir: &Path, site: &str) -> Result<Dataset, Failure> {
+    let dataset = Dataset::load(dir, site)?;
+    if let Some(remark) = dataset.site.remark() {
+        note!("{remark}");
+    }
+    Ok(dataset)
 }
 
 /// The only one of `sites`.
@@ -155,7 +200,7 @@ pub(crate) fn not_empty(dataset: &Dataset) -> Result<(), Failure> {
                 "no encounters in the recordings of site {}",
                 dataset.site.name
             ),
-            "see what is there with `cede data inspect`, or name another folder or site",
+            INSPECT,
         ));
     }
     Ok(())

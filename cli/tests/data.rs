@@ -194,3 +194,122 @@ fn a_new_site_is_drafted_from_its_tracks() {
         cede(folder, &draft).code(3);
     }
 }
+
+fn stderr(assert: &assert_cmd::assert::Assert) -> String {
+    String::from_utf8(assert.get_output().stderr.clone()).unwrap()
+}
+
+#[test]
+fn recordings_of_two_runs_are_never_mixed() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let many = "data synthesize --out made --encounters 60";
+    let few = "data synthesize --out made --encounters 20 --seed 3";
+    let run = |command: &str| cede(folder, &command.split(' ').collect::<Vec<_>>());
+    run(many).success();
+    let refused = run(few).code(3);
+    assert!(
+        stderr(&refused).contains("made is not empty"),
+        "{}",
+        stderr(&refused)
+    );
+    assert!(stderr(&refused).contains("--overwrite"));
+    run(&format!("{few} --overwrite")).success();
+    run(&few.replace("made", "alone")).success();
+    let files = |name: &str| {
+        let mut files: Vec<_> = walk(&folder.join(name));
+        files.sort();
+        files
+    };
+    assert_eq!(files("made"), files("alone"));
+}
+
+/// Paths and contents of the files below `folder`.
+fn walk(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+        if path.is_dir() {
+            let inner = walk(&path).into_iter();
+            files.extend(inner.map(|(path, text)| (format!("{name}/{path}"), text)));
+        } else {
+            files.push((name, std::fs::read(&path).unwrap()));
+        }
+    }
+    files
+}
+
+#[test]
+fn all_sites_are_judged_but_those_without_encounters() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let run = |command: &str| cede(folder, &command.split(' ').collect::<Vec<_>>());
+    run("data synthesize --out made --encounters 20 --seed 3").success();
+    let all = "evaluate --data made --site all --driver cede --split all";
+    let judged = run(all).success();
+    assert_eq!(
+        stderr(&judged),
+        "left out: site SYN-X-AWS-1 has no encounters\n"
+    );
+    let table = String::from_utf8(judged.get_output().stdout.clone()).unwrap();
+    assert!(
+        table.starts_with("SYN-T-AWS-0, all: 16 encounters"),
+        "{table}"
+    );
+    assert!(
+        table.contains("\nSYN-T-TWS-2, all: 9 encounters"),
+        "{table}"
+    );
+    let none = run(&all.replace("--split all", "--split test")).code(3);
+    assert!(
+        stderr(&none).contains("no encounters in these splits"),
+        "{}",
+        stderr(&none)
+    );
+    let named = run("evaluate --data made --site SYN-X-AWS-1 --driver cede").code(3);
+    assert!(stderr(&named).contains("no encounters in the recordings of site SYN-X-AWS-1"));
+    for site in ["SYN-T-AWS-0", "SYN-T-TWS-2"] {
+        std::fs::remove_dir_all(folder.join("made").join(site)).unwrap();
+    }
+    let none = run(all).code(3);
+    assert!(
+        stderr(&none).contains("no encounters at any site in made"),
+        "{}",
+        stderr(&none)
+    );
+}
+
+#[test]
+fn a_site_without_a_description_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("tracks_3.csv"), tracks()).unwrap();
+    let inspect = ["data", "inspect", "--data", ".", "--site", "X"];
+    let told = cede(folder.path(), &inspect).success();
+    assert!(
+        stderr(&told).contains("site X: no description (no X.toml beside"),
+        "{}",
+        stderr(&told)
+    );
+}
+
+#[test]
+fn who_does_not_turn_left_is_no_left_turner() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let run = |command: &str| cede(folder, &command.split(' ').collect::<Vec<_>>());
+    run("data synthesize --out made --encounters 20").success();
+    let replay = "replay made/SYN-X-AWS-1/vehicle_tracks_001.csv --site SYN-X-AWS-1 --driver cede --shield on";
+    let shown = run(replay).success();
+    let shown = String::from_utf8(shown.get_output().stdout.clone()).unwrap();
+    assert!(
+        shown.starts_with("Vehicle 11, other 12: vehicle 11 first"),
+        "{shown}"
+    );
+    assert!(!shown.contains("left-turner"), "{shown}");
+    let page = std::fs::read_to_string(folder.join("out/replay.html")).unwrap();
+    assert!(page.contains("\"called\":[\"vehicle 11\",\"other\"]"));
+    assert!(
+        page.contains("crossing, vehicle 11 first") || page.contains("merging, vehicle 11 first")
+    );
+}

@@ -43,11 +43,7 @@ pub(crate) fn find(dir: &Path, site: &Site) -> Result<Found, DataError> {
             ..sort(vec![dir.to_owned()])
         });
     }
-    let places = [
-        folder_of(dir, site),
-        folder_of(&dir.join("recorded_trackfiles"), site),
-    ];
-    for place in places.into_iter().flatten().chain([dir.to_owned()]) {
+    for place in places(dir, site) {
         let found = sort(csv_files(&place)?);
         if !found.recordings.is_empty() {
             let map = map_of(&place, site);
@@ -56,6 +52,29 @@ pub(crate) fn find(dir: &Path, site: &Site) -> Result<Found, DataError> {
     }
     let site = site.name.clone();
     Err(DataError::new(dir, Problem::NoRecordings { site }))
+}
+
+/// The scene description that lies beside the recordings of `site`, called like it.
+pub(crate) fn description(dir: &Path, site: &Site) -> Option<PathBuf> {
+    let dir = match dir.canonicalize().ok()? {
+        file if file.is_file() => file.parent()?.to_owned(),
+        folder => folder,
+    };
+    places(&dir, site).find_map(|place| {
+        let beside = place.parent()?;
+        let names = [&site.folder, &site.name].map(|name| format!("{name}.toml"));
+        let mut candidates = names.iter().map(|name| beside.join(name));
+        candidates.find(|path| path.is_file())
+    })
+}
+
+/// Where the recordings of `site` may be, in the order in which they are looked for.
+fn places(dir: &Path, site: &Site) -> impl Iterator<Item = PathBuf> {
+    let named = [
+        folder_of(dir, site),
+        folder_of(&dir.join("recorded_trackfiles"), site),
+    ];
+    named.into_iter().flatten().chain([dir.to_owned()])
 }
 
 /// The names of the folders with recordings in `dir` or in its `recorded_trackfiles`, in alphabetical order.

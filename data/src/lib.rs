@@ -76,7 +76,8 @@ pub struct Fold<'d> {
 }
 
 impl Dataset {
-    /// The recordings of the site called `site` (see [`Site::named`]) in the folder `dir`.
+    /// The recordings of the site called `site` (see [`Site::named`]) in the folder `dir`. If nothing describes a site
+    /// of that name, `NAME.toml` beside the folder of its files does, where [`synthetic::write`] puts it.
     ///
     /// `dir` is the folder of the site's files, or one that holds it (also under
     /// `recorded_trackfiles`, as INTERACTION is shipped), or a single file. In a
@@ -98,7 +99,7 @@ impl Dataset {
         if !scenarios.is_empty() {
             return commonroad::dataset(dir, site, &scenarios);
         }
-        let site = Site::named(site)?;
+        let site = described(dir, Site::named(site)?)?;
         let found = files::find(dir, &site)?;
         let recordings = found
             .recordings
@@ -213,5 +214,13 @@ impl Dataset {
             Fold { train, held_out }
         };
         (0..rounds).map(fold).collect()
+    }
+}
+
+/// `site` by the scene description beside its recordings, if it has none yet and there is one.
+fn described(dir: &Path, site: Site) -> Result<Site, DataError> {
+    match files::description(dir, &site) {
+        Some(path) if site.is_by_headings() => Site::read(&path),
+        _ => Ok(site),
     }
 }

@@ -37,6 +37,8 @@ pub struct Site {
     movements: Vec<Movement>,
     #[serde(default, rename = "conflict")]
     conflicts: Vec<Conflict>,
+    #[serde(skip)]
+    described: bool,
 }
 
 /// Numbers of the recording files kept for validation and test; all others are for training.
@@ -127,9 +129,7 @@ impl Site {
             .extension()
             .is_some_and(|extension| extension == "toml")
         {
-            let text = std::fs::read_to_string(path)
-                .map_err(|error| DataError::new(path, Problem::Unreadable(error)))?;
-            return Self::parse(path, &text);
+            return Self::read(path);
         }
         let short = short(name);
         match EMBEDDED.iter().find(|(known, _)| *known == short) {
@@ -139,6 +139,13 @@ impl Site {
                 ..Self::by_headings(name)
             }),
         }
+    }
+
+    /// The site that the scene description at `path` describes.
+    pub(crate) fn read(path: &Path) -> Result<Self, DataError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|error| DataError::new(path, Problem::Unreadable(error)))?;
+        Self::parse(path, &text)
     }
 
     /// A site whose manoeuvres are told by headings: left +50° to +130°, straight
@@ -154,15 +161,31 @@ impl Site {
             arms: Vec::new(),
             movements: Vec::new(),
             conflicts: Vec::new(),
+            described: false,
         }
     }
 
+    /// Whether headings alone tell its manoeuvres and who meets whom: there is no scene description.
+    pub(crate) fn is_by_headings(&self) -> bool {
+        !self.described && !self.every_pair
+    }
+
+    /// What whoever asked for recordings of this site should know: that nothing describes it.
+    #[must_use]
+    pub fn remark(&self) -> Option<String> {
+        let Self { name, .. } = self;
+        self.is_by_headings().then(|| {
+            format!("site {name}: no description (no {name}.toml beside its recordings); headings tell who turns left and meets whom")
+        })
+    }
+
     pub(crate) fn parse(path: &Path, text: &str) -> Result<Self, DataError> {
-        let site: Self = toml::from_str(text).map_err(|error| {
+        let mut site: Self = toml::from_str(text).map_err(|error| {
             DataError::new(path, Problem::Site(error.to_string().trim_end().to_owned()))
         })?;
         site.check()
             .map_err(|problem| DataError::new(path, Problem::Site(problem)))?;
+        site.described = true;
         Ok(site)
     }
 

@@ -98,3 +98,53 @@ fn covered(track: &Track, time: u64) -> OrientedBox {
     let (length, width) = (track.length as f32, track.width as f32);
     OrientedBox::new(pose, Footprint { length, width })
 }
+
+#[test]
+fn a_site_by_name_has_the_description_beside_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path();
+    let written = synthetic::write(dir, 60, 11).unwrap();
+    let site = written.iter().find(|site| site.encounters > 0).unwrap();
+    let recordings = dir.join(&site.name);
+    let file = recordings.join(format!("vehicle_tracks_{:03}.csv", site.files[0]));
+    let path = dir.join(format!("{}.toml", site.name));
+    let described = Dataset::load(dir, path.to_str().unwrap()).unwrap();
+    for place in [dir, &recordings] {
+        let named = Dataset::load(place, &site.name).unwrap();
+        assert_eq!(format!("{named:?}"), format!("{described:?}"));
+        assert_eq!(named.site.remark(), None);
+    }
+    assert_eq!(
+        Dataset::load(&file, &site.name).unwrap().site.remark(),
+        None
+    );
+    std::fs::remove_file(&path).unwrap();
+    let by_headings = Dataset::load(dir, &site.name).unwrap();
+    let remark = by_headings.site.remark().unwrap();
+    assert!(
+        remark.contains(&format!("no {}.toml", site.name)),
+        "{remark}"
+    );
+}
+
+#[test]
+fn what_was_written_is_removed_and_all_else_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path();
+    let written = synthetic::write(dir, 60, 11).unwrap();
+    let notes = [
+        dir.join("notes.toml"),
+        dir.join(&written[0].name).join("notes.txt"),
+    ];
+    for path in &notes {
+        std::fs::write(path, "mine").unwrap();
+    }
+    synthetic::remove(dir).unwrap();
+    assert!(notes.iter().all(|path| path.is_file()));
+    for path in [dir.to_owned(), dir.join(&written[0].name)] {
+        assert_eq!(
+            std::fs::read_dir(&path).unwrap().count(),
+            if path == dir { 2 } else { 1 }
+        );
+    }
+}

@@ -5,7 +5,7 @@
 const KINDS = {
     car: { word: 0, length: 4.6, width: 1.9, speed: 9 },
     lorry: { word: 1, length: 9.0, width: 2.4, speed: 8 },
-    // The controller has no class for people on foot: it takes one for a small, slow bicycle.
+    // Given to the controller as a small, slow bicycle: the page does not use its class for people on foot.
     pedestrian: { word: 2, length: 0.7, width: 0.7, speed: 1.4 },
 };
 

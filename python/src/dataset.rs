@@ -7,9 +7,11 @@ use cede_data::lanelet::LineKind;
 use cede_data::{self as data, Encounter, Manoeuvre, Participant, Role, Split};
 use cede_sim::criticality::{AreaOf, Criticality};
 use numpy::{IntoPyArray, PyArray2};
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
+use std::ffi::CString;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -49,14 +51,19 @@ impl Dataset {
         )))
     }
 
-    /// The recordings of `site` in `folder`, as `cede evaluate --data` reads them.
+    /// The recordings of `site` in `folder`, as `cede evaluate --data` reads them. A site that nothing describes is a
+    /// warning.
     #[staticmethod]
     #[pyo3(signature = (folder, site = "EP0"))]
     fn load(py: Python<'_>, folder: PathBuf, site: &str) -> PyResult<Self> {
-        let loaded = py.detach(|| data::Dataset::load(&folder, site));
-        loaded
-            .map(|loaded| Self(Arc::new(loaded)))
-            .map_err(|wrong| error(format!("{wrong}: {}", wrong.mend())))
+        let loaded = py
+            .detach(|| data::Dataset::load(&folder, site))
+            .map_err(|wrong| error(format!("{wrong}: {}", wrong.mend())))?;
+        if let Some(remark) = loaded.site.remark() {
+            let remark = CString::new(remark)?;
+            PyErr::warn(py, &py.get_type::<PyUserWarning>(), &remark, 1)?;
+        }
+        Ok(Self(Arc::new(loaded)))
     }
 
     #[getter]

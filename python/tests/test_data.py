@@ -74,3 +74,14 @@ def test_environments_over_recordings():
     for _ in range(50):
         seen, *_ = made.step(made.action_space.sample())
     assert seen in made.observation_space
+
+
+def test_a_site_by_name_has_the_description_beside_it(tmp_path):
+    folder = tmp_path / "X"
+    folder.mkdir()
+    rows = "".join(f"1,{0.1 * step:.1f},{0.8 * step:.1f},0\n" for step in range(50))
+    (folder / "tracks_0.csv").write_text("track,t,x,y\n" + rows)
+    with pytest.warns(UserWarning, match="no X.toml beside its recordings"):
+        cede.data.Dataset.load(tmp_path, "X")
+    (tmp_path / "X.toml").write_text('name = "described"\nfolder = "X"\n')
+    assert cede.data.Dataset.load(tmp_path, "X").site == "described"

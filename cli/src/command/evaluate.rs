@@ -8,7 +8,7 @@ use crate::drivers::{Degrees, Drivers, Name};
 use crate::failure::Failure;
 use crate::judge::{ModeName, Plan, ShieldName, UntilName};
 use crate::report::{Report, command};
-use crate::source::{Source, names, not_empty};
+use crate::source::{Source, names};
 use crate::table;
 use crate::threads::Threads;
 use cede_data::{Dataset, Split, output};
@@ -105,14 +105,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     let mut plan = args.plan(mode)?;
     args.check_outputs()?;
-    let sites = args.source.load(args.seed)?;
-    sites.iter().try_for_each(not_empty)?;
+    let sites = args.source.occupied(args.source.load(args.seed)?)?;
     let mut report = args.report_on(&sites)?;
     let (mut records, mut rows) = (Vec::new(), Vec::new());
     for dataset in &sites {
-        if args.split.is_empty() {
-            plan.selections = present(dataset);
-        }
+        plan.selections = args.selections(dataset);
         rows.extend(plan.judge(dataset, |row, drives| {
             if args.episodes.is_some() {
                 records.extend(episodes::records(row, drives));
@@ -121,6 +118,15 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
                 report.add(row, drives);
             }
         })?);
+    }
+    if rows.is_empty() {
+        return Err(Failure::input(
+            format!(
+                "no encounters in these splits at any site in {}",
+                args.source.data
+            ),
+            "name another --split, or add its files to the folders",
+        ));
     }
     if let Some(file) = &args.episodes {
         file.write(&records)?;
@@ -135,16 +141,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 }
 
 impl Args {
-    /// The plan of the evaluation. Without selections it takes all splits that contain files.
+    /// The plan of the evaluation, which has no selections yet: they depend on the site.
     fn plan(&self, mode: ModeName) -> Result<Plan, Failure> {
         if self.partner.is_some() && mode == ModeName::Joint {
             return Err(Failure::ignored("--partner", "--mode joint"));
-        }
-        let mut selections = Vec::new();
-        for &selection in &self.split {
-            if !selections.contains(&selection) {
-                selections.push(selection);
-            }
         }
         let weights = self.weights.as_deref();
         let partner = self.partner.unwrap_or(Name::Baseline(Baseline::Replay));
@@ -152,13 +152,36 @@ impl Args {
         Ok(Plan {
             contenders: drivers.contenders(weights, &self.svo)?,
             lenient: drivers.lenient,
-            selections,
+            selections: Vec::new(),
             mode,
             partner: partner.contender(weights)?,
             until: self.until.unwrap_or(UntilName::Conflict),
             shields: self.shielded().shields(self.contract.as_ref())?,
             seed: self.seed,
         })
+    }
+
+    /// What to judge `dataset` on; without `--split` every split that contains encounters. Of `--site all`, splits
+    /// without encounters are left out, and stderr says so.
+    fn selections(&self, dataset: &Dataset) -> Vec<Selection> {
+        if self.split.is_empty() {
+            return present(dataset);
+        }
+        let mut selections = Vec::new();
+        for &selection in &self.split {
+            if selections.contains(&selection) {
+                continue;
+            }
+            if self.source.is_all() && is_empty(selection, dataset) {
+                note!(
+                    "left out: site {} has no encounters in `{selection}`",
+                    dataset.site.name
+                );
+                continue;
+            }
+            selections.push(selection);
+        }
+        selections
     }
 
     fn shielded(&self) -> ShieldName {
@@ -206,7 +229,13 @@ impl Args {
     }
 }
 
-/// The splits that contain files.
+/// Whether `selection` has nothing to judge on.
+fn is_empty(selection: Selection, dataset: &Dataset) -> bool {
+    let rounds = selection.rounds(dataset);
+    rounds.iter().all(|round| round.judged.is_empty())
+}
+
+/// The splits that contain encounters.
 fn present(dataset: &Dataset) -> Vec<Selection> {
     [Split::Train, Split::Validation, Split::Test]
         .into_iter()

@@ -8,6 +8,7 @@ use crate::failure::Failure;
 use crate::judge::ShieldName;
 use crate::left_out;
 use crate::report::{Report, command};
+use crate::source;
 use cede_controller::Contract;
 use cede_data::{Dataset, Encounter};
 use cede_sim::episode::Until;
@@ -86,7 +87,7 @@ impl FromStr for TrackPair {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let shields = args.shield.shields(args.contract.as_ref())?;
     let contenders = args.driver.contenders(args.weights.as_deref(), &args.svo)?;
-    let dataset = Dataset::load(&args.file, &args.site)?;
+    let dataset = source::recorded(&args.file, &args.site)?;
     let encounter = args.choose(&dataset)?;
     if !args.json {
         numbers::record(encounter);
@@ -167,6 +168,14 @@ impl Args {
         command() + &pair
     }
 
+    /// The folder of the recording.
+    fn folder(&self) -> &Path {
+        match self.file.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        }
+    }
+
     fn choose<'d>(&self, dataset: &'d Dataset) -> Result<&'d Encounter, Failure> {
         let all = || dataset.encounters.iter();
         let chosen = match self.pair {
@@ -185,8 +194,12 @@ impl Args {
                     format!("name one of these with --pair: {pairs}"),
                 ),
                 None => Failure::input(
-                    format!("{file}: it contains no encounter"),
-                    "name another file, or with --site the site that it was recorded at",
+                    format!("{file}: it contains no encounter of site {}", dataset.site.name),
+                    format!(
+                        "name one that has, by the table of `cede data inspect --data {} --site {}`",
+                        self.folder().display(),
+                        self.site
+                    ),
                 ),
             }
         })

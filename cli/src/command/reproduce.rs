@@ -70,7 +70,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         return Err(Failure::ignored("--transfer", "--data synthetic"));
     }
     cede_data::output::check(&args.out.join("rows.json"))?;
-    let sites = args.source.load(1)?;
+    let sites = args.source.occupied(args.source.load(1)?)?;
     let rows = plan::rows(args, args.source.is_several())?;
     sites.iter().try_for_each(trainable)?;
     let transfer = plan::transfer_site(args)?;

@@ -1,5 +1,6 @@
 //! The worst moments of the driver under test, found in all of its episodes.
 
+use super::called::called;
 use super::replayed::Case;
 use super::why::{Class, words};
 use cede_controller::Footprint;
@@ -156,7 +157,7 @@ fn moments(drive: &Drive<'_>) -> Vec<Moment> {
     let roles = drive.ego.map_or(Role::BOTH.to_vec(), |role| vec![role]);
     let overruled = roles
         .into_iter()
-        .filter_map(|role| intervention(role, &episode.actions));
+        .filter_map(|role| intervention(encounter, role, &episode.actions));
     let worst = overruled.max_by(|a, b| a.badness.total_cmp(&b.badness));
     let stands = face_off(encounter, &episode.states);
     [contact, worst, stands].into_iter().flatten().collect()
@@ -198,7 +199,7 @@ fn near_miss(drive: &Drive<'_>) -> Option<Moment> {
 }
 
 /// Where the shield changed the acceleration of the vehicle in `role` most within a step.
-fn intervention(role: Role, actions: &[[Action; 2]]) -> Option<Moment> {
+fn intervention(encounter: &Encounter, role: Role, actions: &[[Action; 2]]) -> Option<Moment> {
     let steps = actions.windows(2).zip(1..);
     let jumps = steps.filter_map(|(pair, step)| {
         let [before, now] = [pair[0], pair[1]].map(|both| both[role as usize]);
@@ -207,10 +208,7 @@ fn intervention(role: Role, actions: &[[Action; 2]]) -> Option<Moment> {
         acted.then_some((step, jump, before.acceleration, now))
     });
     let (step, badness, before, now) = jumps.max_by(|a, b| a.1.total_cmp(&b.1))?;
-    let who = match role {
-        Role::Left => "left-turner",
-        Role::Other => "other",
-    };
+    let who = called(encounter, role);
     Some(Moment {
         kind: Kind::Intervention,
         badness,
@@ -219,7 +217,7 @@ fn intervention(role: Role, actions: &[[Action; 2]]) -> Option<Moment> {
             "{who} from {before:.1} to {:.1} m/s² after {:.1} s, {}",
             now.acceleration,
             seconds(step),
-            words(role, now.cause)
+            words(encounter, role, now.cause)
         ),
     })
 }

@@ -1,6 +1,7 @@
 //! Encounters to be replayed on the page.
 
 use super::around::{Bystander, around, in_the_way};
+use super::called::called;
 use super::digits::{centi, route};
 use super::why::{Class, words};
 use cede_controller::ConflictKind;
@@ -15,6 +16,8 @@ use serde::Serialize;
 #[derive(Serialize)]
 pub(super) struct Case {
     name: String,
+    /// What the two vehicles are called.
+    called: [String; 2],
     point: [f64; 2],
     vehicles: [Vehicle; 2],
     record: Motion,
@@ -37,7 +40,7 @@ struct Motion {
     length: u32,
     s: [Vec<f64>; 2],
     v: [Vec<f64>; 2],
-    /// The left-turner's, in rad, until the first arrival.
+    /// That of the vehicle in the role `left`, in rad, until the first arrival.
     svo: Vec<f64>,
 }
 
@@ -62,6 +65,7 @@ impl Case {
         let point = encounter.conflict_point;
         Self {
             name: case_name(encounter),
+            called: Role::BOTH.map(|role| called(encounter, role)),
             point: [point.x, point.y].map(|c| centi(f64::from(c))),
             vehicles: Role::BOTH.map(|role| Vehicle {
                 route: route(encounter.judged(role)),
@@ -85,7 +89,7 @@ impl Case {
             steps
                 .filter_map(|(i, both)| {
                     let cause = both[role as usize].cause;
-                    Some((i, Class::of(cause)?, words(role, cause)))
+                    Some((i, Class::of(cause)?, words(drive.encounter, role, cause)))
                 })
                 .collect()
         };
@@ -142,10 +146,7 @@ fn case_name(encounter: &Encounter) -> String {
         ConflictKind::Merging => "merging",
         _ => "crossing",
     };
-    let first = match encounter.first {
-        Role::Left => "left-turner",
-        Role::Other => "other",
-    };
+    let first = called(encounter, encounter.first);
     format!("({file}, {left}, {other}): {kind}, {first} first")
 }
 

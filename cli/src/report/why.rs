@@ -1,7 +1,8 @@
 //! The shield's reasons, in words.
 
+use super::called::the;
 use cede_controller::{Cause, Reason};
-use cede_data::Role;
+use cede_data::{Encounter, Role};
 use serde::Serialize;
 
 /// Classes of reasons for an intervention.
@@ -41,14 +42,15 @@ impl Class {
 }
 
 /// `cause` in words, as the shield of the vehicle in `role` would log it.
-pub(crate) fn words(role: Role, cause: Cause) -> String {
+pub(crate) fn words(encounter: &Encounter, role: Role, cause: Cause) -> String {
     let rival = match role {
-        Role::Left => "the other",
-        Role::Other => "the left-turner",
+        Role::Left => Role::Other,
+        Role::Other => Role::Left,
     };
     match cause {
         Cause::Shielded(intervention) => {
-            format!("shielded: {}", intervention.reason.naming(rival))
+            let rival = the(encounter, rival);
+            format!("shielded: {}", intervention.reason.naming(&rival))
         }
         _ => cause.to_string(),
     }

@@ -1,11 +1,16 @@
 //! Synthetic recordings as files: INTERACTION's tracks, Lanelet2 maps and scene descriptions.
 
+use super::plan::PREFIX;
 use super::{Generated, generate};
 use crate::output::{self, OutputError};
 use crate::{RawState, Recording};
 use std::collections::BTreeMap;
+use std::fs;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// How the names of recordings begin.
+const TRACKS: &str = "vehicle_tracks_";
 
 /// What was written for one site.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -21,8 +26,9 @@ pub struct WrittenSite {
 /// Writes at least `encounters` encounters, those of [`crate::Dataset::synthetic`], into `dir`.
 ///
 /// Every site has a folder of `vehicle_tracks_NNN.csv`, and beside it a map and a scene
-/// description. `Dataset::load(dir, "dir/SITE.toml")` gives the same encounters, bit for bit:
-/// the tracks have three decimals in memory as they have in the files.
+/// description. `Dataset::load(dir, "SITE")` gives the same encounters, bit for bit:
+/// the tracks have three decimals in memory as they have in the files. What another run wrote there stays
+/// unless it has the same name: [`remove`] takes it away.
 ///
 /// # Errors
 /// When a file cannot be written; no file is left half-written.
@@ -32,7 +38,7 @@ pub fn write(dir: &Path, encounters: usize, seed: u64) -> Result<Vec<WrittenSite
     for item in &generated {
         sites.entry(&item.layout.name).or_default().push(item);
         let folder = dir.join(&item.layout.name);
-        let name = format!("vehicle_tracks_{:03}.csv", item.recording.file);
+        let name = format!("{TRACKS}{:03}.csv", item.recording.file);
         output::write(&folder.join(name), |out| tracks(out, &item.recording))?;
     }
     let mut written = Vec::new();
@@ -50,6 +56,44 @@ pub fn write(dir: &Path, encounters: usize, seed: u64) -> Result<Vec<WrittenSite
         });
     }
     Ok(written)
+}
+
+/// Removes from `dir` what [`write`] writes: recordings, maps and scene descriptions of synthetic sites. All else stays.
+///
+/// # Errors
+/// When the folder cannot be read, or a file in it not removed.
+pub fn remove(dir: &Path) -> Result<(), OutputError> {
+    for path in beginning(PREFIX, dir)? {
+        if path.is_dir() {
+            let mut recordings = beginning(TRACKS, &path)?.into_iter();
+            recordings.try_for_each(|file| remove_file(&file))?;
+            // It stays if somebody has put something else there.
+            let _ = fs::remove_dir(&path);
+        } else if path
+            .extension()
+            .is_some_and(|it| it == "osm" || it == "toml")
+        {
+            remove_file(&path)?;
+        }
+    }
+    Ok(())
+}
+
+/// What is in `dir` under names that begin with `prefix`.
+fn beginning(prefix: &str, dir: &Path) -> Result<Vec<PathBuf>, OutputError> {
+    let entries = fs::read_dir(dir).and_then(Iterator::collect::<io::Result<Vec<_>>>);
+    let mut entries = entries.map_err(failed(dir))?;
+    entries.retain(|entry| entry.file_name().to_string_lossy().starts_with(prefix));
+    Ok(entries.iter().map(fs::DirEntry::path).collect())
+}
+
+fn remove_file(path: &Path) -> Result<(), OutputError> {
+    fs::remove_file(path).map_err(failed(path))
+}
+
+fn failed(path: &Path) -> impl FnOnce(io::Error) -> OutputError {
+    let path = path.to_owned();
+    |source| OutputError { path, source }
 }
 
 fn tracks(out: &mut dyn Write, recording: &Recording) -> io::Result<()> {

@@ -16,7 +16,7 @@ mod rules;
 mod traffic;
 pub mod zone;
 
-pub use files::{WrittenSite, write};
+pub use files::{WrittenSite, remove, write};
 
 use crate::encounter::Encounter;
 use crate::{Dataset, Files, Recording, Site, extract, lanelet};

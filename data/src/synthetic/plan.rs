@@ -71,9 +71,12 @@ pub(super) fn class_of(number: u16) -> Class {
     CLASSES[usize::from(number % PER_ROUND)]
 }
 
+/// How the names of synthetic sites begin.
+pub(super) const PREFIX: &str = "SYN-";
+
 /// As in `SYN-T-AWS-10`.
 pub(super) fn name_of(number: u16) -> String {
-    format!("SYN-{}-{number}", class_of(number).name)
+    format!("{PREFIX}{}-{number}", class_of(number).name)
 }
 
 /// Two of seven recordings are kept apart; seven has no factor in common with the classes.

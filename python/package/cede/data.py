@@ -37,7 +37,8 @@ def open_dataset(
         data: `"synthetic"`; `"recorded"`, the folder in `CEDE_INTERACTION_DIR`; a folder; a
             CommonRoad scenario (`.xml`) or a folder of them; or a data set, which is returned as
             it is.
-        site: Site of the recordings; scenarios are sites of their own.
+        site: Site of the recordings: its name, described by `NAME.toml` beside its folder if that
+            is there, or the path of a description. Scenarios are sites of their own.
         encounters: Number of synthetic encounters, at least.
         seed: Seed of the synthetic encounters.
     """

@@ -6,7 +6,7 @@ use crate::drivers::policy;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::plural::Count;
-use crate::source::{Source, not_empty};
+use crate::source::Source;
 use crate::svg;
 use crate::threads::Threads;
 use cede_data::output;
@@ -40,7 +40,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let policy = policy(args.weights.as_deref())?;
     output::check(&args.draw)?;
     let sites = args.source.load_seeded("--seed", args.seed, 0)?;
-    sites.iter().try_for_each(not_empty)?;
+    let sites = args.source.occupied(sites)?;
     let mut studies = Vec::new();
     for dataset in &sites {
         interrupt::check()?;

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::source::some_encounters;
 use cede_data::output;
-use cede_data::synthetic::WrittenSite;
+use cede_data::synthetic::{self, WrittenSite};
 use std::path::PathBuf;
 
 /// Options of `cede data synthesize`.
@@ -18,6 +18,9 @@ pub(crate) struct Args {
     /// The same seed gives the same files
     #[arg(long, default_value_t = 0, value_name = "S")]
     seed: u64,
+    /// Remove what an earlier run wrote in DIR; otherwise DIR has to be empty
+    #[arg(long)]
+    overwrite: bool,
     /// Print the counts as one JSON object
     #[arg(long)]
     json: bool,
@@ -26,7 +29,8 @@ pub(crate) struct Args {
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     output::check(&args.out.join("SITE.toml"))?;
-    let sites = cede_data::synthetic::write(&args.out, args.encounters, args.seed)?;
+    args.make_room()?;
+    let sites = synthetic::write(&args.out, args.encounters, args.seed)?;
     if args.json {
         let json = |site: &WrittenSite| {
             serde_json::json!({
@@ -44,12 +48,31 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let total: usize = sites.iter().map(|site| site.encounters).sum();
     println!("{total} encounters in {}", args.out.display());
     if let Some(site) = sites.first() {
-        let description = args.out.join(format!("{}.toml", site.name));
         note!(
             "read a site with: --data {} --site {}",
             args.out.display(),
-            description.display()
+            site.name
         );
     }
     Ok(())
+}
+
+impl Args {
+    /// Makes sure that no recording of an earlier run stays beside a map of this one.
+    fn make_room(&self) -> Result<(), Failure> {
+        if self.overwrite {
+            return Ok(synthetic::remove(&self.out)?);
+        }
+        let out = self.out.display();
+        let unreadable = |error| Failure::input(format!("{out}: {error}"), "name another folder");
+        match self.out.read_dir().map_err(unreadable)?.next() {
+            None => Ok(()),
+            Some(_) => Err(Failure::input(
+                format!(
+                    "{out} is not empty: recordings of an earlier run would stay among the new ones"
+                ),
+                "name another folder, or add --overwrite, which removes what an earlier run wrote there",
+            )),
+        }
+    }
 }

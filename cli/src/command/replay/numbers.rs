@@ -1,6 +1,6 @@
 //! An encounter as numbers: the states of both vehicles, and the shield's interventions.
 
-use crate::report::{Class, words};
+use crate::report::{Class, called, words};
 use cede_controller::kinematics::State;
 use cede_data::{Encounter, Role};
 use cede_sim::evaluate::{Drive, TableRow};
@@ -11,11 +11,15 @@ const EVERY: usize = 5;
 
 /// Prints the encounter as it was recorded.
 pub(super) fn record(encounter: &Encounter) {
+    let left = match called(encounter, Role::Left).as_str() {
+        "left-turner" => "Left-turner",
+        _ => "Vehicle",
+    };
     println!(
-        "Left-turner {}, other {}: {} first after {:.1} s, the next {:.1} s later.\n",
+        "{left} {}, other {}: {} first after {:.1} s, the next {:.1} s later.\n",
         encounter.id.left,
         encounter.id.other,
-        name(encounter.first),
+        called(encounter, encounter.first),
         f64::from(encounter.steps) * 0.1,
         encounter.pet
     );
@@ -27,7 +31,8 @@ pub(super) fn record(encounter: &Encounter) {
 /// shield's interventions.
 pub(super) fn drive(row: &TableRow, drive: &Drive<'_>) {
     let episode = &drive.episode;
-    let first = episode.first().map_or("nobody", name);
+    let name = |role| called(drive.encounter, role);
+    let first = episode.first().map_or("nobody".to_owned(), name);
     let overruled = overruled(drive);
     if row.driver != "replay" || !overruled.is_empty() {
         println!(
@@ -84,7 +89,7 @@ fn overruled(drive: &Drive<'_>) -> Vec<Stretch> {
                     class,
                     from: step,
                     to: step,
-                    why: words(role, cause),
+                    why: words(drive.encounter, role, cause),
                 }),
             }
         }
@@ -93,16 +98,10 @@ fn overruled(drive: &Drive<'_>) -> Vec<Stretch> {
     stretches
 }
 
-const fn name(role: Role) -> &'static str {
-    match role {
-        Role::Left => "left-turner",
-        Role::Other => "other",
-    }
-}
-
 fn table(encounter: &Encounter, states: &[[State; 2]]) {
-    println!("            left-turner            other       SVO of the");
-    println!("  t, s   to go, m     m/s   to go, m     m/s   left-turner, °");
+    let [left, other] = Role::BOTH.map(|role| called(encounter, role));
+    println!("{left:>23}{other:>17}{:>17}", "SVO of");
+    println!("  t, s   to go, m     m/s   to go, m     m/s   {left}, °");
     let mut orientations = svo_series(encounter, states.iter().copied());
     for (step, states) in states.iter().enumerate() {
         let orientation = orientations.next();

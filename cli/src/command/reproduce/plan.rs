@@ -4,7 +4,7 @@ use super::Args;
 use super::job::{Job, Judged};
 use crate::failure::Failure;
 use crate::settings::{self, AlgorithmName, RowSettings};
-use crate::source::not_empty;
+use crate::source::{self, not_empty};
 use cede_data::{Dataset, Encounter, Fold, Split};
 use cede_sim::evaluate::Selection;
 use cede_train::run::Algorithm;
@@ -33,7 +33,7 @@ pub(super) fn transfer_site(args: &Args) -> Result<Option<Dataset>, Failure> {
     let Some(site) = &args.transfer else {
         return Ok(None);
     };
-    let dataset = Dataset::load(Path::new(&args.source.data), site)?;
+    let dataset = source::recorded(Path::new(&args.source.data), site)?;
     not_empty(&dataset)?;
     Ok(Some(dataset))
 }

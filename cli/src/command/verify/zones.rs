@@ -7,8 +7,9 @@ use crate::failure::Failure;
 use crate::input;
 use crate::progress;
 use crate::safety::Kind;
+use crate::source;
 use crate::threads::Threads;
-use cede_data::{Dataset, output};
+use cede_data::output;
 use cede_verify::zones::example::with_zones;
 use cede_verify::zones::{self, Failing, RESERVE, Site, Verdict};
 use clap::Args;
@@ -105,7 +106,7 @@ impl Zones {
         }
         if let Some(folder) = &self.data {
             for name in &self.site {
-                chosen.push(Named::recorded(&Dataset::load(folder, name)?));
+                chosen.push(Named::recorded(&source::recorded(folder, name)?));
             }
         }
         if chosen.is_empty() {

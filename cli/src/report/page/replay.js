@@ -179,6 +179,7 @@ function player(report) {
     slider.max = horizon.toFixed(1);
     slider.value = Math.min(slider.value, horizon);
     view = new View(find("scene"), ...surroundings(item));
+    for (const name of document.querySelectorAll(".called")) name.textContent = item.called[0];
     find("outcome").textContent = `Recorded: ${outcome(item.record)}. ${drive.driver}: ${outcome(drive)}.${leftOut(drive.left_out.length)}`;
     drawCharts();
     draw();
@@ -192,7 +193,7 @@ function player(report) {
   function outcome({ first, length, end }) {
     if (end === "collision") return `collision after ${(length * STEP).toFixed(1)} s`;
     if (!first) return "nobody arrives in time";
-    return `${first === "left" ? "left-turner" : "other"} first, after ${(length * STEP).toFixed(1)} s`;
+    return `${item.called[first === "left" ? 0 : 1]} first, after ${(length * STEP).toFixed(1)} s`;
   }
 
   // An episode has the two vehicles alone.
@@ -294,9 +295,9 @@ function player(report) {
     return drive.shielded[i].find(([k]) => k === step);
   }
   function why(t) {
-    const told = ["Left-turner", "Other"].flatMap((name, i) => {
+    const told = item.called.flatMap((name, i) => {
       const acted = acts(i, t);
-      return acted ? [`${name} ${acted[2]}.`] : [];
+      return acted ? [`${name[0].toUpperCase()}${name.slice(1)} ${acted[2]}.`] : [];
     });
     return told.join(" ") || "The shield lets both drive as they like.";
   }
@@ -326,7 +327,7 @@ function player(report) {
   }
 
   const swatch = (colour, name, ghost) => `<span class="swatch${ghost ? " ghost" : ""}" style="${ghost ? "border-color" : "background"}:var(${colour})"></span>${name}`;
-  find("scene-legend").innerHTML = swatch("--left", "left-turner") + swatch("--other", "other") + swatch("--soft", "as recorded", true) + swatch("--around", "traffic around, as recorded: nobody reacts to it, and it reacts to nobody");
+  find("scene-legend").innerHTML = swatch("--left", '<span class="called"></span>') + swatch("--other", "other") + swatch("--soft", "as recorded", true) + swatch("--around", "traffic around, as recorded: nobody reacts to it, and it reacts to nobody");
   caseSelect.onchange = () => { slider.value = 0; choose(); };
   driverSelect.onchange = choose;
   slider.oninput = () => { stop(); draw(); };
