@@ -17,6 +17,7 @@ exec 8>"$build/check.lock" # one check at a time: they share a log and golden de
 flock 8
 firmware/setup.sh
 source "$build/env"
+source firmware/documented.sh
 target=thumbv7em-none-eabihf
 max_flash=98304 # of the M4F with the policy in f32
 max_soft_flash=131072
@@ -116,7 +117,10 @@ on() {
     esac
     for ram in "$(value "RAM to decide, bytes")" "$(value "RAM to prepare a junction, bytes")"; do
         [ "$ram" -le "$most" ] || fail "more than $most bytes of RAM"
+        documented docs/benchmarks.md "$name" "$ram"
     done
+    documented docs/benchmarks.md "$name" "$flash" "$(value "instructions of the network, most")" \
+        "$(value "instructions of a decision, most")"
 }
 value() { sed -n "s/^$1: //p" "$build/log"; }
 
@@ -131,6 +135,7 @@ derived() {
 if command -v python3 >/dev/null; then
     most=$(value "instructions of a decision, most") bound=$(derived)
     echo "instructions of a decision: $most the most here, $bound derived (of $max_instructions)"
+    documented docs/benchmarks.md "the most that are derived, with 8 others (below)" "$bound"
     [ "$most" -le "$bound" ] || fail "a decision took more instructions than were derived"
     [ "$bound" -le $max_instructions ] || fail "more than $max_instructions instructions"
     [ "$most" -gt "$(derived --set WATCHED=1)" ] || fail "a wrong number in the table is not found"

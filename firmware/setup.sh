@@ -137,7 +137,7 @@ build_core() {
     [[ $target != thumb* ]] || core_options=(--cfg thumb)
     version=$("$compiler" --version | cut -d' ' -f2)
     library=$tools/usr/src/rustc-$version/library
-    echo "building core $version for $target"
+    echo "building core $version for $target, which takes one to two minutes"
     mkdir -p "$lib"
     core() {
         RUSTC_BOOTSTRAP=1 "$compiler" --edition=2024 --crate-type lib --target $target --sysroot "$new/sysroot" \

@@ -5,7 +5,7 @@ use assert_cmd::cargo::cargo_bin_cmd;
 #[test]
 fn too_few_boxes_show_nothing_and_name_the_inputs() {
     let mut command = cargo_bin_cmd!("cede");
-    command.args(["verify", "margins", "--boxes", "100", "--json"]);
+    command.args(["verify", "margins", "--boxes", "3000", "--json"]);
     let output = command.output().unwrap();
     assert_eq!(output.status.code(), Some(1));
     let told = String::from_utf8(output.stderr).unwrap();
@@ -22,12 +22,32 @@ fn too_few_boxes_show_nothing_and_name_the_inputs() {
 }
 
 #[test]
+fn a_larger_slack_is_no_mend_where_there_is_no_bound() {
+    let mut command = cargo_bin_cmd!("cede");
+    command.args(["verify", "margins", "--boxes", "1"]);
+    let output = command.output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        told.contains(
+            "no bound in so many boxes: crosses before the other (worst case) for speed 0 to 20"
+        ),
+        "{told}"
+    );
+    assert!(!told.contains("larger `slack`"), "{told}");
+}
+
+#[test]
 fn what_is_beyond_the_contract_is_drawn() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("beyond.svg");
     let mut command = cargo_bin_cmd!("cede");
     command.args(["verify", "beyond", "--encounters", "2", "--draw"]);
-    assert!(command.arg(&file).output().unwrap().status.success());
+    let output = command.arg(&file).output().unwrap();
+    assert!(output.status.success());
+    let table = String::from_utf8(output.stdout).unwrap();
+    assert!(table.contains("those of 2 that begin with a safe plan"));
+    assert!(table.contains("noticed: ") && !table.contains("lag 2 ×"));
     let drawn = std::fs::read_to_string(&file).unwrap();
     assert!(drawn.starts_with("<svg") && drawn.ends_with("</svg>\n"));
     for text in [

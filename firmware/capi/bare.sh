@@ -1,15 +1,29 @@
 #!/usr/bin/env bash
 # Builds the C library for a core without an operating system, and makes one object of it in which nothing but the
-# interface is global: bare.sh TARGET FOLDER [cargo options]. Prints where libcede.a is; beside it is what it was made of.
+# interface is global. Prints where libcede.a is; beside it is what it was made of.
+#
+#   bare.sh TARGET FOLDER [cargo options]   for example: bare.sh thumbv7em-none-eabihf build
 #
 # $cross is the prefix of the GNU tools, and $bare_compiler and $bare_flags may name a compiler and its flags for a
-# target that rustup does not have.
+# target that rustup does not have; without $bare_compiler those of firmware/setup.sh are taken, where it has run.
 set -euo pipefail
+usage() { sed -n '2,/^set/p' "$0" | sed '$d;s/^# \{0,1\}//'; }
+case ${1:-} in -h | --help) usage && exit ;; esac
+[ $# -ge 2 ] || { usage >&2 && exit 2; }
 target=$1
 folder=$2
 shift 2
 here=$(cd "$(dirname "$0")" && pwd)
 cross=${cross:-arm-none-eabi-}
+setup=$here/../../.build/cortex-m/env
+if [ -z "${bare_compiler+set}" ] && [ -e "$setup" ]; then
+    source "$setup"
+    bare_compiler=$target_compiler bare_flags=$target_flags
+fi
+if [ -z "${bare_compiler:-}" ] && [ ! -d "$(rustc --print target-libdir --target "$target")" ]; then
+    echo "bare.sh: no core for $target: rustup target add $target, or firmware/setup.sh" >&2
+    exit 1
+fi
 
 mkdir -p "$folder"
 [ -z "${bare_compiler:-}" ] || export RUSTC=$bare_compiler

@@ -15,6 +15,7 @@ exec 7>"$build/lock" # one check at a time
 flock 7
 firmware/setup.sh
 source .build/cortex-m/env
+source firmware/documented.sh
 unset RUSTFLAGS
 export CARGO_TERM_QUIET=true
 capi=firmware/capi
@@ -22,8 +23,8 @@ capi_library=$PWD/$capi/target/release/libcede.a
 examples=firmware/examples/c
 assets=controller/assets
 target=thumbv7em-none-eabihf
-max_flash=115712 # with the texts of the examples
-max_ecu=107008   # without
+max_flash=116736 # with the texts of the examples
+max_ecu=107520   # without
 max_ram=24576
 max_stack=8192 # derived, of an ECU's task
 max_instructions=100000
@@ -46,6 +47,8 @@ host() { # host FOLDER [make's options]: the examples' output on the host
     for program in faults updating; do
         sed "/^measured: /d" "$1/$program.txt" | diff "$examples/$program.txt" - || fail "$program on the host has other outcomes than $program.txt"
     done
+    [ $(($("$1/answer" $assets/embedded.cede))) = "$(sed -n 's/^#define CEDE_EMBEDDED_ANSWER //p' $capi/include/cede.h)" ] ||
+        fail "answer prints another one than CEDE_EMBEDDED_ANSWER"
 }
 host "$build/plain"
 host "$build/sanitized" SANITIZE=1
@@ -151,7 +154,8 @@ if command -v python3 >/dev/null; then
     echo "a recursion, a call by a pointer and an array of unknown length are refused"
     arm-none-eabi-ld "$build/m4f/named.o" -e cede_abi_version -o "$build/m4f/named.elf"
     mapfile -t roots < <(sed 's/^/--root=/' "$build/m4f/interface")
-    bounds "$build/m4f/named.elf" "${roots[@]}" | sort -t: -k2 -n -r | head -n 8
+    bounds "$build/m4f/named.elf" "${roots[@]}" | sort -t: -k2 -n -r | head -n 8 | tee "$build/m4f/bounds"
+    while IFS=': ' read -r function bytes; do documented docs/integration.md "\`$function\`" "$bytes"; done <"$build/m4f/bounds"
     # Measured as it is below, so that the two can be compared.
     LIBRARY=$build/m4f/named.o link "$build/m4f/ecu-named.elf" ecu cortex-m4 fpv4-sp-d16 -DTICK_NS=40 \
         -Wl,--wrap=cede_approach_decide
@@ -182,6 +186,12 @@ on() {
         instructions=$(measured "instructions of a decision, most")
         echo "$name, $program: as on the host; flash $flash, RAM $ram, of it stack $(measured "stack, bytes") bytes;" \
             "a decision takes up to $instructions instructions"
+        if [ "$name" = m4f ]; then
+            documented docs/integration.md "flash, weights and example included" "$flash"
+            documented docs/integration.md "RAM, all objects and the stack" "$ram"
+            documented docs/integration.md "of it stack" "$(measured "stack, bytes")"
+            documented docs/integration.md "instructions of \`cede_approach_decide\`, the most of this run, one other" "$instructions"
+        fi
         [ "$flash" -le $max_flash ] || fail "more than $max_flash bytes of flash"
         [ $program != ecu ] || [ "$flash" -le $max_ecu ] || fail "more than $max_ecu bytes of flash without texts"
         [ "$ram" -le $max_ram ] || fail "more than $max_ram bytes of RAM"

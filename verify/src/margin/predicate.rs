@@ -53,9 +53,9 @@ impl Input {
     fn range(self, contract: &Contract) -> [f32; 2] {
         match self {
             Self::Speed | Self::OtherSpeed => [0.0, 20.0],
-            Self::Previous | Self::Command => {
-                [-contract.ego().braking, contract.ego().acceleration]
-            }
+            // It may have been given while no plan was safe.
+            Self::Previous => [-contract.ego().emergency, contract.ego().acceleration],
+            Self::Command => [-contract.ego().braking, contract.ego().acceleration],
             // Plans that go for more than a minute are not made.
             Self::Periods => [0.0, 60.0 / contract.period()],
             Self::Pace => [0.0, MAX_PACE],

@@ -118,11 +118,14 @@ struct Subject<'c> {
 }
 
 impl Subject<'_> {
+    fn margin(&self, region: Region) -> Rounded {
+        let inputs = region.map(Rounded::input);
+        self.predicate.margin(self.contract, inputs)
+    }
+
     /// The box, unless rounding cannot matter on it: `f32` certainly says no, or yes is certainly right.
     fn piece(&self, region: Region) -> Option<Piece> {
-        let margin = self
-            .predicate
-            .margin(self.contract, region.map(Rounded::input));
+        let margin = self.margin(region);
         let refused = (margin.exact.hi + margin.error).next_up() < 0.0;
         let without_slack = margin.exact.lo + f64::from(self.contract.slack());
         let right = without_slack.next_down() >= 0.0;
@@ -133,9 +136,13 @@ impl Subject<'_> {
         })
     }
 
-    /// Cuts a piece in two, across the input for which the errors of the two halves are least together.
+    /// Cuts a piece in two, across the input for which the errors of the two halves are least together; one without a
+    /// bound across the input that is in its way.
     fn cut(&self, whole: Piece) -> Cut {
-        let inputs = 0..self.predicate.inputs().len();
+        let inputs = match self.in_the_way(&whole) {
+            Some(input) => input..input + 1,
+            None => 0..self.predicate.inputs().len(),
+        };
         let cuts: Vec<[Half; 2]> = inputs
             .filter_map(|input| halves(whole.region, input))
             .map(|halves| halves.map(|region| (region, self.piece(region))))
@@ -151,6 +158,31 @@ impl Subject<'_> {
             bounded: 2 * cuts.len() as u64,
             seen: matter.fold(0.0, |most, (region, _)| self.executed(*region).max(most)),
         }
+    }
+
+    /// Of a piece without a bound: the input that takes it away, if the ranges of the inputs are let in one by one, the
+    /// narrowest beside its domain first. None if its middle has no bound, or that input cannot be cut.
+    ///
+    /// The errors of the halves tell nothing here: one half of an input may not be enough.
+    fn in_the_way(&self, whole: &Piece) -> Option<usize> {
+        if whole.error.is_finite() {
+            return None;
+        }
+        let (region, domain) = (whole.region, self.predicate.domain(self.contract));
+        let width = |[lo, hi]: [f32; 2]| hi - lo;
+        let share = |&input: &usize| width(region[input]) / width(domain[input]);
+        let mut inputs: Vec<usize> = (0..self.predicate.inputs().len()).collect();
+        inputs.sort_by(|a, b| share(a).total_cmp(&share(b)));
+        let mut let_in = region.map(|range| [middle(range); 2]);
+        let bounded = |region| self.margin(region).error.is_finite();
+        if !bounded(let_in) {
+            return None;
+        }
+        let found = inputs.into_iter().find(|&input| {
+            let_in[input] = region[input];
+            !bounded(let_in)
+        });
+        found.filter(|&input| halves(region, input).is_some())
     }
 
     /// How far `f32` is from the reals in the middle of the box.

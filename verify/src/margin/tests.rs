@@ -343,6 +343,36 @@ fn no_slack_covers_nothing_and_the_box_is_named() {
     }
 }
 
+/// A passenger car: `contracts/passenger-car.toml`.
+const INEXACT: Contract = match SENSED
+    .to_builder()
+    .latency(0.2)
+    .jitter(0.003)
+    .ego_acceleration(2.4)
+    .ego_go(1.5)
+    .ego_braking(5.0)
+    .ego_emergency(7.0)
+    .ego_lag(0.2)
+    .ego_gain(0.1)
+    .ego_disturbance(0.3)
+    .other_max_speed(16.0)
+    .other_braking(9.0)
+    .follower_reaction(1.0)
+    .build()
+{
+    Ok(contract) => contract,
+    Err(_) => panic!("a number is out of its range"),
+};
+
+/// Boxes without a bound are cut until they have one.
+#[test]
+fn a_drivetrain_that_is_not_exact_has_a_bound() {
+    for predicate in Predicate::ALL {
+        let bound = bound(predicate, &INEXACT, 100_000);
+        assert!(bound.error < 1.0, "{predicate:?}: {bound:?}");
+    }
+}
+
 #[test]
 fn the_same_on_any_number_of_threads() {
     let on = |threads| {

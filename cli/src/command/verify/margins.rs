@@ -51,8 +51,11 @@ pub(crate) struct Margins {
     json: bool,
 }
 
-/// What to do about a bound that is not shown.
+/// What to do about a bound that is larger than the slack.
 const MEND: &str = "more --boxes sharpen the bounds, a larger `slack` of the contract covers them";
+
+/// What to do where there is no bound.
+const UNBOUNDED: &str = "more --boxes may find one; no `slack` stands in for it";
 
 /// A predicate under a contract, with its bound.
 struct MarginRow {
@@ -95,11 +98,7 @@ impl Check for Margins {
         let contract = contract::or_worst_case(self.contract.as_ref())?;
         let short = shortfall(&contract);
         let rows = self.rows(contract);
-        let mut open: Vec<String> = rows
-            .iter()
-            .filter(|row| !row.shown())
-            .map(MarginRow::open)
-            .collect();
+        let mut open = not_shown(&rows);
         if short * FASTEST > f64::from(INFLATION) {
             open.push(format!("plans go {short:e} s too short"));
         }
@@ -110,14 +109,31 @@ impl Check for Margins {
             json: serde_json::json!({ "margins": objects, "going_short_s": short }),
             summary: format!("rounding moves a margin by at most {:.2} mm", 1e3 * largest),
             findings: rows.iter().map(MarginRow::finding).collect(),
-            open: (!open.is_empty()).then(|| format!("not shown: {}; {MEND}", open.join("; "))),
+            open: (!open.is_empty()).then(|| open.join("; ")),
         })
     }
 }
 
+/// What is not shown, and what to do about it.
+fn not_shown(rows: &[MarginRow]) -> Vec<String> {
+    let open = rows.iter().filter(|row| !row.shown());
+    let (large, none): (Vec<_>, Vec<_>) = open.partition(|row| row.bound.error.is_finite());
+    [
+        ("not shown", large, MEND),
+        ("no bound in so many boxes", none, UNBOUNDED),
+    ]
+    .into_iter()
+    .filter(|(_, rows, _)| !rows.is_empty())
+    .map(|(what, rows, mend)| {
+        let rows: Vec<String> = rows.into_iter().map(MarginRow::open).collect();
+        format!("{what}: {}; {mend}", rows.join("; "))
+    })
+    .collect()
+}
+
 fn table(rows: &[MarginRow], short: f64) -> String {
     let mut lines = vec![format!(
-        "{:<26} {:<38} {:>9} {:>11} {:>8} {:>9}",
+        "{:<27} {:<38} {:>9} {:>11} {:>8} {:>9}",
         "predicate", "contract", "boxes", "at most, mm", "met, mm", "slack, mm"
     )];
     lines.extend(rows.iter().map(MarginRow::text));
@@ -140,7 +156,7 @@ impl MarginRow {
 
     fn text(&self) -> String {
         format!(
-            "{:<26} {:<38} {:>9} {:>11.3} {:>8.3} {:>9.0}  {}",
+            "{:<27} {:<38} {:>9} {:>11.3} {:>8.3} {:>9.0}  {}",
             self.predicate.name(),
             self.contract,
             self.bound.boxes,

@@ -1,5 +1,7 @@
 //! By how much the world is not what the contract says.
 
+use cede_controller::Contract;
+
 /// What differs from the contract, the rest is within it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviation {
@@ -38,6 +40,27 @@ pub struct Row {
     pub name: &'static str,
     /// In numbers.
     pub deviation: Deviation,
+}
+
+impl Row {
+    /// Whether it deviates from this contract: a factor changes nothing of a number that is 0.
+    #[must_use]
+    pub fn deviates(&self, contract: &Contract) -> bool {
+        let ego = contract.ego();
+        let factors = [
+            (self.deviation.latency, contract.latency()),
+            (self.deviation.slower, ego.lag),
+            (self.deviation.gain, ego.gain),
+            (self.deviation.disturbance, ego.disturbance),
+            (
+                self.deviation.errors,
+                contract.position_error().max(contract.speed_error()),
+            ),
+        ];
+        factors
+            .iter()
+            .all(|&(factor, number)| factor == 1.0 || number > 0.0)
+    }
 }
 
 impl Deviation {
@@ -178,4 +201,29 @@ pub const ROWS: [Row; 21] = [
 
 const fn row(name: &'static str, deviation: Deviation) -> Row {
     Row { name, deviation }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_factor_of_what_is_0_is_no_deviation() {
+        let left_out = |contract: &Contract| -> Vec<&str> {
+            let rows = ROWS.iter().filter(|row| !row.deviates(contract));
+            rows.map(|row| row.name).collect()
+        };
+        let exact = [
+            "lag 2 ×",
+            "gain error 2 ×",
+            "disturbance 2 ×",
+            "sensors err 2 ×",
+        ];
+        assert_eq!(left_out(&Contract::WORST_CASE), exact);
+        let sensed = Contract::builder().speed_error(0.3).latency(0.0).build();
+        assert_eq!(
+            left_out(&sensed.unwrap()),
+            ["latency 2 ×", "latency 3 ×", exact[0], exact[1], exact[2]]
+        );
+    }
 }
