@@ -129,6 +129,11 @@ impl Report {
         Ok(())
     }
 
+    /// Tells above the results of which of several trainings the rows are.
+    pub(crate) fn tell_seed(&mut self, note: &str) {
+        note.clone_into(&mut self.page.seed_note);
+    }
+
     /// Adds learning curves.
     pub(crate) fn learned(&mut self, curves: &[Learned]) {
         let curve = |curve: &Learned| model::Curve::of(curve.driver, &curve.points);

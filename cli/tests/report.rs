@@ -14,8 +14,8 @@ fn url(page: &Path) -> String {
 
 fn report(folder: &Path, shield: &str) -> PathBuf {
     let page = folder.join("report.html");
-    assert_cmd::Command::cargo_bin("cede")
-        .unwrap()
+    let mut evaluate = assert_cmd::Command::cargo_bin("cede").unwrap();
+    let ended = evaluate
         .args(["evaluate", "--data", "synthetic", "--split", "test"])
         .args(["--driver", "replay,nearer-first", "--until", "cleared"])
         .args(["--shield", shield])
@@ -23,6 +23,9 @@ fn report(folder: &Path, shield: &str) -> PathBuf {
         .arg(&page)
         .assert()
         .success();
+    let told = String::from_utf8_lossy(&ended.get_output().stderr);
+    let line = format!("report in {}\n", page.display());
+    assert!(told.contains(&line), "{told}");
     page
 }
 
@@ -121,6 +124,93 @@ fn the_worst_moments_open_their_replay() {
         ),
     );
     assert_eq!(told, "true,true,true");
+}
+
+/// The report of trainings from two seeds.
+fn trained(folder: &Path) -> PathBuf {
+    let arguments = "reproduce --data synthetic --encounters 60 --rows bc --seeds 2 --set bc.updates=20 --set bc.width=16";
+    assert_cmd::Command::cargo_bin("cede")
+        .unwrap()
+        .args(arguments.split(' '))
+        .arg("--out")
+        .arg(folder)
+        .assert()
+        .success();
+    folder.join("report.html")
+}
+
+#[test]
+fn a_report_on_trainings_tells_its_seed_and_opens_with_what_was_trained() {
+    let Some(browser) = browser() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let page = trained(folder.path());
+    let told = open_with(
+        &browser,
+        &page,
+        &format!(
+            "{TELL}
+        const at = (id) => document.getElementById(id);
+        tell([
+            at('summary').firstChild.textContent.includes('seed 0 alone'),
+            at('driver').value,
+            at('chart-legend').textContent.includes(`six of ${{at('driver').length}} drivers shown`),
+        ].join());
+    "
+        ),
+    );
+    assert_eq!(told, "true,bc,true");
+}
+
+#[test]
+fn margins_show_only_what_has_values() {
+    let Some(browser) = browser() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let page = trained(folder.path());
+    let script = "
+        const at = (id) => document.getElementById(id);
+        const margins = [at('pet').parentElement.hidden, at('distribution-legend').textContent.includes('recorded')];
+        const [lone, row] = [at('ttc').parentElement, at('ttc').closest('.row')].map((e) => e.clientWidth);
+        tell([...margins, 2 * lone < row].join());";
+    let told = open_with(&browser, &page, &format!("{TELL} {script}"));
+    assert_eq!(told, "true,false,true", "episodes until the first arrival");
+    let told = open_with(
+        &browser,
+        &report(folder.path(), "off"),
+        &format!("{TELL} {script}"),
+    );
+    assert_eq!(told, "false,true,true", "episodes until both have left");
+}
+
+#[test]
+fn every_trained_row_is_shown_before_those_behind_a_shield_and_baselines() {
+    let Some(browser) = browser() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let page = report(folder.path(), "off");
+    let script = "
+        const shields = ['', ' + shield (all-way stop)', ' + shield (worst case)'];
+        const rows = ['idm', 'bc', 'sacer-v', 'sacer-svo', 'apg'].flatMap((row) => shields.map((shield) => ({ driver: row + shield })));
+        tell(few(rows).map(({ driver }) => driver).join());";
+    let told = open_with(&browser, &page, &format!("{TELL} {script}"));
+    let behind = "bc + shield (all-way stop),bc + shield (worst case)";
+    assert_eq!(told, format!("bc,{behind},sacer-v,sacer-svo,apg"));
+}
+
+#[test]
+fn the_papers_rows_stand_below_those_of_its_protocol() {
+    let Some(browser) = browser() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let page = report(folder.path(), "both");
+    let script = "
+        const drawn = (row) => {
+            const host = document.createElement('div');
+            const published = { driver: 'paper: BC', split: 'test', priority_accuracy: 0.6471, episode_length_error: 0.5759, collisions: 0 };
+            const rows = report.rows.map((r) => ({ ...r, ...row }));
+            summary(host, { ...report, rows, paper: [published] });
+            return [...host.querySelectorAll('tr.paper td')].map((cell) => cell.textContent).join('|');
+        };
+        tell(drawn({ until: 'conflict' }) + ';' + drawn({ until: 'cleared' }));";
+    let told = open_with(&browser, &page, &format!("{TELL} {script}"));
+    assert_eq!(told, "paper: BC|64.7 %|0.576|0|||||;");
 }
 
 #[test]

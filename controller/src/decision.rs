@@ -233,6 +233,11 @@ impl Reason {
             ),
             Self::Arrival { .. } => write!(f, "{who} is in its zone"),
             Self::Hidden { .. } => write!(f, "{who} may be in its zone"),
+            Self::Entry { gap, needs, .. } if gap < 0.0 => write!(
+                f,
+                "{who} may overlap by {:.1} m, entering needs {needs:.1} m",
+                -gap
+            ),
             Self::Entry { gap, needs, .. } => write!(
                 f,
                 "{who} may be as near as {gap:.1} m, entering needs {needs:.1} m"

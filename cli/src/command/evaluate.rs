@@ -136,6 +136,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             report.sweep(&sites[0], contract::or_worst_case(args.contract.as_ref())?)?;
         }
         report.write(path)?;
+        note!("report in {}", path.display());
     }
     args.print(&sites, &rows)
 }

@@ -63,6 +63,9 @@ pub(crate) struct Args {
     threads: Threads,
 }
 
+/// What the reports say of several seeds.
+const SEED_NOTE: &str = "Trained drivers: seed 0 alone. Means over the seeds are in the terminal's tables; rows.json has every seed.";
+
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     args.threads.start()?;
@@ -90,6 +93,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     })?;
 
     let mut reports = Reports::new(&sites);
+    if args.seeds > 1 {
+        reports.tell_seed();
+    }
     let mut rows = Vec::new();
     for judged in judge::policies(&jobs, &trained)? {
         if judged.seed == 0 {
@@ -150,6 +156,12 @@ impl Reports {
         let command = report::command();
         let named = |site: &Dataset| (site.site.name.clone(), Report::new(site, &command));
         Self(sites.iter().map(named).collect())
+    }
+
+    fn tell_seed(&mut self) {
+        for (_, report) in &mut self.0 {
+            report.tell_seed(SEED_NOTE);
+        }
     }
 
     /// Adds a row to the report of its site, or else to all reports: it is one of a site that nothing is

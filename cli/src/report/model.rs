@@ -24,6 +24,8 @@ pub(super) struct Page {
     pub(super) verdict: String,
     pub(super) subtitle: String,
     pub(super) provenance: String,
+    /// Of which of several trainings the rows are; empty if there is nothing to tell.
+    pub(super) seed_note: String,
     /// Names of the drivers in the order of their colours.
     pub(super) drivers: Vec<String>,
     pub(super) rows: Vec<TableRow>,

@@ -129,6 +129,25 @@ mod tests {
     }
 
     #[test]
+    fn a_negative_gap_is_told_as_an_overlap() {
+        let told = |gap| {
+            let entry = Reason::Entry {
+                other: 7,
+                gap,
+                needs: 9.5,
+            };
+            std::format!("{entry}; {}", entry.naming("the lorry"))
+        };
+        let near = "may be as near as 4.0 m, entering needs 9.5 m";
+        assert_eq!(told(4.0), std::format!("other 7 {near}; the lorry {near}"));
+        let overlaps = "may overlap by 5.9 m, entering needs 9.5 m";
+        assert_eq!(
+            told(-5.9),
+            std::format!("other 7 {overlaps}; the lorry {overlaps}")
+        );
+    }
+
+    #[test]
     fn a_reason_has_the_numbers_of_the_passage_that_is_missed() {
         let (why, clears, speed) = reason(Passage::Ahead {
             gap: 4.0,

@@ -100,7 +100,7 @@ function legend(host, entries) {
     if (dash) line.className = "dashed";
     if (dot) line.className = "dot";
     if (chosen) span.className = "chosen";
-    span.append(line, name);
+    span.append(...(colour ? [line] : []), name);
     return span;
   }));
 }

@@ -32,8 +32,10 @@ function distributions({ distributions, drivers }) {
   const blocks = groupBy(distributions, (d) => d.block);
   find("block").append(...Array.from(blocks.keys(), (name) => new Option(name, name)));
   const draw = () => {
-    const block = few(blocks.get(find("block").value), (d) => d.driver);
-    const recorded = block[0].recorded_pet;
+    const all = blocks.get(find("block").value).filter((d) => d.pet.length + d.ttc.length > 0);
+    const block = few(all);
+    // Where episodes end with the first arrival, there is no second one to wait for.
+    const recorded = block.some((d) => d.pet.length) ? block[0].recorded_pet : [];
     const chart = (host, pick, limit, label, extra) => {
       const series = block.filter((d) => pick(d).length).map((d) => ({
         points: cumulative(pick(d), d.n, limit), colour: palette.get(d.driver), width: d.driver.startsWith("cede") ? 2.6 : 1.6, dash: dashes(d.driver),
@@ -41,13 +43,13 @@ function distributions({ distributions, drivers }) {
       lineChart(host, { series: [...series, ...extra], x: { label, low: 0, high: limit }, y: { label: "share of episodes", low: 0, high: 1 } });
     };
     const dashed = { colour: "var(--ink)", width: 2, dash: "5 4" };
-    // Where episodes end with the first arrival, there is no second one to wait for.
-    find("pet").parentElement.hidden = block.every((d) => d.pet.length === 0);
+    find("pet").parentElement.hidden = recorded.length === 0;
     chart(find("pet"), (d) => d.pet, 20, "PET, s", [{ ...dashed, points: cumulative(recorded, recorded.length, 20) }]);
     chart(find("ttc"), (d) => d.ttc, 8, "smallest TTC, s", []);
     legend(find("distribution-legend"), [
-      { name: "recorded", colour: "var(--ink)", dash: true },
+      ...(recorded.length ? [{ name: "recorded", colour: "var(--ink)", dash: true }] : []),
       ...block.map((d) => ({ name: d.driver, colour: palette.get(d.driver), dash: dashes(d.driver) !== "none" })),
+      ...leftOut(block, all),
     ]);
   };
   const told = distributions.find((d) => d.pet.length > 0);

@@ -24,12 +24,20 @@ function colours(names) {
 }
 const dashes = (name) => (bare(name) === name ? "none" : "7 3");
 
-// At most six series: Cede, then those that are not the record, in their order.
-function few(items, name, chosen) {
-  const rank = (item) => (item === chosen ? 0 : bare(name(item)) === "cede" ? 1 : bare(name(item)) === "replay" ? 3 : 2);
+// At most six series: the chosen one, Cede, what was trained, baselines, and the record; those without a shield first.
+function few(items, chosen) {
+  const rank = (item) => {
+    const name = bare(item.driver);
+    if (item === chosen) return -2;
+    if (name === "cede") return -1;
+    if (name === "replay") return 4;
+    return 2 * Number(name in DRIVERS) + Number(name !== item.driver);
+  };
   const kept = new Set([...items].sort((a, b) => rank(a) - rank(b)).slice(0, 6));
   return items.filter((item) => kept.has(item));
 }
+// What a legend says of those that `few` leaves out.
+const leftOut = (kept, all) => (kept.length < all.length ? [{ name: `six of ${all.length} drivers shown` }] : []);
 
 const css = (name) => {
   // A canvas does not know light-dark(); the browser resolves it on an element.
@@ -163,6 +171,7 @@ function surroundings(item) {
 function player(report) {
   const find = (id) => document.getElementById(id);
   const palette = colours(report.drivers);
+  const trained = new Set(report.learning.map((curve) => curve.driver));
   const [caseSelect, driverSelect, slider, clock] = ["case", "driver", "time", "clock"].map(find);
   let item, drive, view, charts, horizon, playing = false, last;
 
@@ -180,14 +189,15 @@ function player(report) {
     slider.value = Math.min(slider.value, horizon);
     view = new View(find("scene"), ...surroundings(item));
     for (const name of document.querySelectorAll(".called")) name.textContent = item.called[0];
-    find("outcome").textContent = `Recorded: ${outcome(item.record)}. ${drive.driver}: ${outcome(drive)}.${leftOut(drive.left_out.length)}`;
+    find("outcome").textContent = `Recorded: ${outcome(item.record)}. ${drive.driver}: ${outcome(drive)}.${inTheWay(drive.left_out.length)}`;
     drawCharts();
     draw();
   }
 
-  // The controller, or whoever does not merely repeat the record.
+  // The controller, the row that was trained last, or whoever does not merely repeat the record.
   function favourite(drives) {
-    return drives.findLast((d) => d.driver.startsWith("cede")) ?? drives.findLast((d) => d.driver !== "replay") ?? drives[0];
+    const kinds = [(d) => d.driver.startsWith("cede"), (d) => trained.has(d.driver), (d) => d.driver !== "replay"];
+    return kinds.map((kind) => drives.findLast(kind)).find(Boolean) ?? drives[0];
   }
 
   function outcome({ first, length, end }) {
@@ -197,7 +207,7 @@ function player(report) {
   }
 
   // An episode has the two vehicles alone.
-  const leftOut = (count) => count === 0 ? ""
+  const inTheWay = (count) => count === 0 ? ""
     : ` Left out: ${count === 1 ? "a recorded vehicle" : `${count} recorded vehicles`} around, which would be in the way.`;
 
   const styled = (d) => ({
@@ -206,7 +216,7 @@ function player(report) {
     opacity: d === drive ? 1 : 0.65,
     dash: dashes(d.driver),
   });
-  const shown = () => few(item.drives, (d) => d.driver, drive);
+  const shown = () => few(item.drives, drive);
   const lines = (pick) => {
     const points = (d) => pick(d).map((y, k) => [k * STEP, y]);
     const others = shown().filter((d) => d !== drive);
@@ -252,6 +262,7 @@ function player(report) {
     legend(find("chart-legend"), [
       { name: "recorded", colour: "var(--ink)", dash: true },
       ...shown().map((d) => ({ name: d.driver, colour: palette.get(d.driver), chosen: d === drive, dash: dashes(d.driver) !== "none" })),
+      ...leftOut(shown(), item.drives),
       ...Object.keys(REASONS).filter((name) => acted.has(name)).map((name) => ({ name: `shield: ${REASONS[name].words}`, colour: `var(${REASONS[name].tint})`, dot: true })),
     ]);
     find("why").hidden = acted.size === 0;

@@ -4,8 +4,8 @@ const COLUMNS = [
   { head: "priority accuracy", key: "priority_accuracy", best: Math.max, show: (r) => share(r.priority_accuracy, r.priority_accuracy_interval) },
   { head: "length error", key: "episode_length_error", best: Math.min, show: (r) => number(r.episode_length_error, 3, r.episode_length_error_interval) },
   { head: "in s", key: "episode_length_error_s", best: Math.min, show: (r) => number(r.episode_length_error_s, 2) },
-  { head: "collisions", key: "collisions", bad: (r) => r.collisions > 0, show: (r) => [String(r.collisions)] },
-  { head: "time-outs", key: "time_outs", show: (r) => [r.time_outs === undefined ? "" : String(r.time_outs)] },
+  { head: "collisions", key: "collisions", bad: (r) => r.collisions > 0, show: (r) => count(r.collisions) },
+  { head: "time-outs", key: "time_outs", show: (r) => count(r.time_outs) },
   { head: "position error after 3\u00a0s,\u00a0m", key: "position_rmse_3s", best: Math.min, show: (r) => number(r.position_rmse_3s, 2) },
   { head: "SVO error, rad", key: "svo_rmse", best: Math.min, show: (r) => number(r.svo_rmse, 2) },
   { head: "TTC <\u00a01.5\u00a0s", key: "critical_ttc_share", show: (r) => percent(r.critical_ttc_share) },
@@ -14,6 +14,8 @@ const COLUMNS = [
 ];
 
 const known = (value) => value !== null && value !== undefined;
+
+const count = (value) => [known(value) ? String(value) : ""];
 
 function number(value, digits, interval) {
   if (!known(value)) return [""];
@@ -54,12 +56,15 @@ function blockName(row) {
 
 const blockKey = (row) => [row.split, row.mode, row.until, row.shield].join("/");
 
+// The paper's rows that follow the protocol of a row.
+const besides = (paper, row) => paper.filter((p) => p.split === row.split && row.mode === "joint" && row.until === "conflict");
+
 function tables(host, { rows, paper }) {
   const blocks = Map.groupBy ? Map.groupBy(rows, blockKey) : groupBy(rows, blockKey);
   for (const block of blocks.values()) {
     const title = document.createElement("h3");
     title.textContent = blockName(block[0]);
-    const beside = paper.filter((p) => p.split === block[0].split && block[0].mode === "joint" && block[0].until === "conflict");
+    const beside = besides(paper, block[0]);
     const wrap = document.createElement("div");
     scrollable(wrap, blockName(block[0]));
     wrap.append(table(block, beside));
@@ -83,12 +88,12 @@ const DRIVERS = {
 const SUMMARY = [
   { head: "priority accuracy", key: "priority_accuracy", best: Math.max, show: (r) => share(r.priority_accuracy, r.priority_accuracy_interval).slice(0, 2) },
   { head: "length error", key: "episode_length_error", best: Math.min, show: (r) => number(r.episode_length_error, 3) },
-  { head: "collisions", key: "collisions", bad: (r) => r.collisions > 0, show: (r) => [String(r.collisions)] },
-  { head: "time-outs", key: "time_outs", show: (r) => [String(r.time_outs)] },
+  { head: "collisions", key: "collisions", bad: (r) => r.collisions > 0, show: (r) => count(r.collisions) },
+  { head: "time-outs", key: "time_outs", show: (r) => count(r.time_outs) },
 ];
 
-// One row a driver, without the shield beside behind it, for the first protocol of the page. Nothing, where all rows have one shield.
-function summary(host, { rows }) {
+// One row a driver, without the shield beside behind it, for the first protocol of the page; then the paper's rows, which have no shield.
+function summary(host, { rows, paper, seed_note }) {
   const first = rows[0];
   const same = rows.filter((r) => ["site", "split", "mode", "until"].every((key) => r[key] === first[key]));
   const shields = [...new Set(same.map((r) => r.shield))].slice(0, 2);
@@ -129,11 +134,17 @@ function summary(host, { rows }) {
       }
     }
   }
+  for (const row of shields.includes("off") ? besides(paper, first) : []) {
+    const line = body.insertRow();
+    line.className = "paper";
+    line.insertCell().textContent = row.driver;
+    for (const shield of shields) for (const column of SUMMARY) line.insertCell().append(...(shield === "off" ? column.show(row) : []));
+  }
   const wrap = document.createElement("div");
   scrollable(wrap, "Results by driver");
   wrap.append(table);
   const title = document.createElement("p");
-  title.textContent = `${first.split}: ${first.encounters} encounters, ${first.mode === "joint" ? "one driver for both vehicles" : "a driver for one vehicle at a time"}, ${first.until === "conflict" ? "until the first arrival" : "until both have left"}. Best of each column in bold.`;
+  title.textContent = `${first.split}: ${first.encounters} encounters, ${first.mode === "joint" ? "one driver for both vehicles" : "a driver for one vehicle at a time"}, ${first.until === "conflict" ? "until the first arrival" : "until both have left"}. Best of each column in bold. ${seed_note}`;
   host.append(title, wrap);
   document.getElementById("who").append(...names.filter((name) => DRIVERS[name]).flatMap((name) => {
     const [dt, dd] = ["dt", "dd"].map((tag) => document.createElement(tag));
