@@ -58,7 +58,7 @@ pub fn write(dir: &Path, encounters: usize, seed: u64) -> Result<Vec<WrittenSite
     Ok(written)
 }
 
-/// Removes from `dir` what [`write`] writes: recordings, maps and scene descriptions of synthetic sites. All else stays.
+/// Removes from `dir` what [`write()`] writes: recordings, maps and scene descriptions of synthetic sites. All else stays.
 ///
 /// # Errors
 /// When the folder cannot be read, or a file in it not removed.
