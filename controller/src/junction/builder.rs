@@ -287,7 +287,7 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
     /// The junction.
     ///
     /// Cost: a look at each two paths, and polygons where they are near each other: about
-    /// 3 ms on a desktop for 12 paths of 64 points (`benches/junction.rs`).
+    /// 2 ms on a desktop for 12 paths of 64 points (`benches/junction.rs`).
     ///
     /// # Errors
     /// [`JunctionError::NoPaths`], [`JunctionError::Tolerance`], [`JunctionError::Returns`].

@@ -82,12 +82,7 @@ impl<'a> Body<'a> {
 
     /// No part of the inflated footprint is farther (m) than this from the polyline.
     pub(super) fn reach(&self) -> f32 {
-        let sweep = 0.5 * STEP * self.radius;
-        let sweep = if sweep > SMALL_SWEEP {
-            sweep
-        } else {
-            SMALL_SWEEP
-        };
+        let sweep = larger(0.5 * STEP * self.radius, SMALL_SWEEP);
         // Sides that are moved out by x move a corner by √2 x; rounding is allowed for.
         1.001 * self.radius + 1.5 * (self.inflation + sweep)
     }
@@ -124,20 +119,12 @@ impl<'a> Body<'a> {
             turning: false,
             first: i == 0,
             last: i + 1 == self.polyline.pieces(),
-            half: self.half(if sweeps.1 > sweeps.0 {
-                sweeps.1
-            } else {
-                sweeps.0
-            }),
+            half: self.half(larger(sweeps.0, sweeps.1)),
         };
         let window = smaller(TURNING * self.footprint.length, straight.length);
         let starts = before.and_then(|bend| self.arc(&bend, [bend.middle, along]));
         let ends = after.and_then(|bend| self.arc(&bend, [along, bend.middle]));
-        Some(Stage {
-            straight,
-            window,
-            arcs: [starts, ends],
-        })
+        Some(Stage::new(straight, window, [starts, ends]))
     }
 
     /// The directions of one half of a bend; none, if it is small.
@@ -189,9 +176,34 @@ pub(super) struct Stage {
     /// The directions that a vehicle has besides, at the start of the piece and at its end, over `window` metres.
     arcs: [Option<Arc>; 2],
     window: f32,
+    /// Half the length and the width of a footprint along the piece that covers those of all motions.
+    half: (f32, f32),
+    /// The largest distance of a direction from the piece's; 0 without turns.
+    pub(super) askew: f32,
 }
 
 impl Stage {
+    fn new(straight: Motion, window: f32, arcs: [Option<Arc>; 2]) -> Self {
+        let (mut half, mut askew) = (straight.half, 0.0);
+        for arc in arcs.iter().flatten() {
+            let away = length(&(arc.to - arc.from));
+            // Corners are nearer than the sum of both halves; rounding is allowed for.
+            let more = 1.01 * away * (arc.half.0 + arc.half.1);
+            half = (
+                larger(half.0, arc.half.0 + more),
+                larger(half.1, arc.half.1 + more),
+            );
+            askew = larger(askew, away);
+        }
+        Self {
+            straight,
+            arcs,
+            window,
+            half,
+            askew,
+        }
+    }
+
     /// The motions of a vehicle that is about to turn or has turned. Together with those of the neighbouring pieces they
     /// have all directions at each point.
     pub(super) fn turns(&self) -> impl Iterator<Item = Motion> {
@@ -216,21 +228,17 @@ impl Stage {
             })
     }
 
-    /// Whether some turn on the piece may touch something on a piece of another route.
-    pub(super) fn turns_near(&self, other: &Self) -> bool {
-        if self.arcs.iter().all(Option::is_none) {
-            return false;
-        }
-        let between = self.straight.start - other.straight.start;
-        let reach = self.straight.length + other.straight.length + self.size() + other.size();
-        between.dot(&between) <= reach * reach
+    /// Whether there is any.
+    pub(super) fn turns_at_all(&self) -> bool {
+        self.askew > 0.0
     }
 
-    /// No part of any footprint is farther (m) than this from the piece.
-    fn size(&self) -> f32 {
-        let size = |half: (f32, f32)| half.0 + half.1;
-        let turned = self.arcs.iter().flatten().map(|arc| size(arc.half));
-        turned.fold(size(self.straight.half), |a, b| if b > a { b } else { a })
+    /// The motion along the piece with a footprint that covers those of all motions on it.
+    pub(super) const fn whole(&self) -> Motion {
+        Motion {
+            half: self.half,
+            ..self.straight
+        }
     }
 
     /// The motion along the piece.
@@ -274,6 +282,10 @@ impl Arc {
             point * (1.0 / length(&point))
         })
     }
+}
+
+const fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }
 
 const fn smaller(a: f32, b: f32) -> f32 {
@@ -439,8 +451,44 @@ mod tests {
                 near(turn.half.1 - 1.52, sweep);
             }
         }
-        // The largest of all.
-        near(before.size(), turns[0][0].half.0 + turns[0][0].half.1);
+    }
+
+    #[test]
+    fn the_whole_of_a_piece_covers_all_motions_on_it() {
+        for degrees in [-90.0, -37.0, -3.0, 0.0, 4.0, 60.0] {
+            let route = corner(degrees);
+            let body = Body::new(route.polyline(), CAR, 0.1);
+            for stage in [0, 1].map(|i| body.stage(i).unwrap()) {
+                let whole = stage.whole();
+                let covers = |motion: Motion, ahead: f32, beside: f32| {
+                    let side = Vector::new(-motion.direction.y, motion.direction.x);
+                    let start = motion.start
+                        + motion.direction * (ahead * motion.half.0)
+                        + side * (beside * motion.half.1);
+                    let ends = [start, start + motion.velocity * motion.length];
+                    ends.iter().all(|corner| {
+                        let from = corner - whole.start;
+                        let along = whole.direction.dot(&from);
+                        let across = whole.direction.perp(&from).abs();
+                        -whole.half.0 - 1e-3 <= along
+                            && along <= whole.length + whole.half.0 + 1e-3
+                            && across <= whole.half.1 + 1e-3
+                    })
+                };
+                for motion in stage.turns().chain([*stage.straight()]) {
+                    for (ahead, beside) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
+                        assert!(covers(motion, ahead, beside), "{degrees}: {motion:?}");
+                    }
+                    let away = length(&(motion.direction - whole.direction));
+                    assert!(away <= stage.askew + 1e-6, "{degrees}: {away}");
+                }
+                assert_eq!(stage.turns_at_all(), stage.turns().count() > 0);
+            }
+        }
+        // No larger than it has to be: where nothing turns, it is the motion along the piece.
+        let small = corner(1.0);
+        let stage = Body::new(small.polyline(), CAR, 0.1).stage(0).unwrap();
+        assert_eq!(stage.whole().half, stage.straight().half);
     }
 
     #[test]
@@ -463,21 +511,8 @@ mod tests {
             let stage = body.stage(i).unwrap();
             near(stage.straight().half.0, 2.02 + 0.021_816);
             assert_eq!(stage.turns().count(), 0);
-            assert!(!stage.turns_near(&stage));
+            assert!(!stage.turns_at_all());
         }
-    }
-
-    #[test]
-    fn turns_are_near_what_their_footprints_may_touch() {
-        let route = corner(60.0);
-        let stage = Body::new(route.polyline(), CAR, 0.0).stage(0).unwrap();
-        let apart = |x: f32| {
-            let points = [(x, 0.0), (x, 10.0)].map(|(x, y)| Point::new(x, y));
-            let other = Route::<2>::new(points).unwrap();
-            stage.turns_near(&Body::new(other.polyline(), CAR, 0.0).stage(0).unwrap())
-        };
-        let reach = 20.0 + 10.0 + stage.size() + 2.02 + 1.52;
-        assert!(apart(reach - 20.1) && !apart(reach - 19.9));
     }
 
     #[test]

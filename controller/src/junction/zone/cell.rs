@@ -1,6 +1,6 @@
 //! Where two motions can be at most: their rectangle in the (s, t) plane.
 
-use super::body::Motion;
+use super::body::{Motion, Stage};
 use super::{INFLATION, Span};
 
 /// Two directions whose cosine is above this point the same way: within 30°.
@@ -41,6 +41,17 @@ impl Cell {
             end: a.first || a.last || b.first || b.last,
         }
     }
+
+    /// Where all motions of two stages can be of which one turns; none, if some of them meet head-on and some do not.
+    pub(super) fn of_turns(a: &Stage, b: &Stage) -> Option<Self> {
+        let along = a.straight().direction.dot(&b.straight().direction);
+        // Rounding is allowed for.
+        let uncertain = a.askew + b.askew + 1.0e-3;
+        ((along - OPPOSITE).abs() > uncertain).then(|| Self {
+            parallel: false,
+            ..Self::of(a.straight(), b.straight())
+        })
+    }
 }
 
 /// Whether the vehicles point the same way. Turns do not count: they are in no lane.
@@ -56,7 +67,9 @@ pub(super) fn opposite(a: &Motion, b: &Motion) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Point, Vector};
+    use crate::geometry::{Footprint, Point, Vector};
+    use crate::junction::route::Route;
+    use crate::junction::zone::body::Body;
 
     /// From arc length `arc` (m) on, in direction `degrees`.
     fn motion(arc: f32, length: f32, degrees: f32) -> Motion {
@@ -94,6 +107,40 @@ mod tests {
             let (mut a, b) = (motion(0.0, 1.0, 0.0), motion(0.0, 1.0, 0.0));
             end(&mut a);
             assert!(Cell::of(&a, &b).end && Cell::of(&b, &a).end);
+        }
+    }
+
+    #[test]
+    fn where_turns_can_be_is_known_if_all_or_none_of_them_meet_head_on() {
+        let stage = |degrees: f32, bend: f32| {
+            let at = |degrees: f32| {
+                let (sin, cos) = degrees.to_radians().sin_cos();
+                Vector::new(20.0 * cos, 20.0 * sin)
+            };
+            let middle = Point::origin() + at(degrees);
+            let points = [Point::origin(), middle, middle + at(degrees + bend)];
+            let route = Route::<3>::new(points).unwrap();
+            let footprint = Footprint::PAPER;
+            Body::new(route.polyline(), footprint, 0.0)
+                .stage(0)
+                .unwrap()
+        };
+        // The cosine of 120° may be off by 0.17: half of a bend of 20°.
+        let other = stage(0.0, 0.0);
+        for (degrees, bend, known) in [
+            (0.0, 20.0, true),
+            (105.0, 20.0, true),
+            (115.0, 20.0, false),
+            (125.0, -20.0, false),
+            (135.0, 20.0, true),
+            (119.0, 0.0, true),
+        ] {
+            let turns = Cell::of_turns(&stage(degrees, bend), &other);
+            assert_eq!(turns.is_some(), known, "{degrees}, {bend}");
+            let Some(cell) = turns else { continue };
+            assert!(!cell.parallel);
+            assert_eq!(cell.opposite, degrees > 120.0);
+            assert!(cell.ego.contains(19.9) && cell.other.contains(19.9));
         }
     }
 

@@ -14,6 +14,22 @@ type Polygon = Vec<Point, 12>;
 // Not inlined, like `cut`: a microcontroller has no stack for all of their polygons at once.
 #[inline(never)]
 pub(super) fn meet(a: &Motion, b: &Motion) -> Option<Patch> {
+    let limits = limits(a, b)?;
+    let mut polygon = rectangle(a.length, b.length);
+    for limit in &limits {
+        let range = limit.range(a.length, b.length);
+        if range.to > limit.radius {
+            cut(&mut polygon, limit, 1.0);
+        }
+        if range.from < -limit.radius {
+            cut(&mut polygon, limit, -1.0);
+        }
+    }
+    bounds(a, b, &polygon)
+}
+
+/// Along which axes the rectangles have to overlap; none, if along one of them they never do.
+pub(super) fn limits(a: &Motion, b: &Motion) -> Option<[Limit; 4]> {
     let between = a.start - b.start;
     let reach = a.length + b.length + a.half.0 + a.half.1 + b.half.0 + b.half.1;
     if between.dot(&between) > reach * reach {
@@ -32,22 +48,12 @@ pub(super) fn meet(a: &Motion, b: &Motion) -> Option<Patch> {
             return None;
         }
     }
-    let mut polygon = rectangle(a.length, b.length);
-    for limit in &limits {
-        let range = limit.range(a.length, b.length);
-        if range.to > limit.radius {
-            cut(&mut polygon, limit, 1.0);
-        }
-        if range.from < -limit.radius {
-            cut(&mut polygon, limit, -1.0);
-        }
-    }
-    bounds(a, b, &polygon)
+    Some(limits)
 }
 
 /// The rectangles overlap along one axis while |offset + along s + other_along t| ≤ radius.
 #[derive(Clone, Copy, Default)]
-struct Limit {
+pub(super) struct Limit {
     radius: f32,
     offset: f32,
     along: f32,
@@ -104,15 +110,19 @@ fn cut(polygon: &mut Polygon, limit: &Limit, side: f32) {
     // the polygon would stay as it is: larger, not smaller.
     let mut fits = true;
     let mut keep = |p| fits &= kept.push(p).is_ok();
-    let ahead = polygon.iter().cycle().skip(1);
-    for (&p, &q) in polygon.iter().zip(ahead) {
-        let (at_p, at_q) = (inside(p), inside(q));
+    let Some(&first) = polygon.first() else {
+        return;
+    };
+    let (mut p, mut at_p) = (first, inside(first));
+    for &q in polygon.iter().skip(1).chain([&first]) {
+        let at_q = inside(q);
         if at_p >= 0.0 {
             keep(p);
         }
         if (at_p >= 0.0) != (at_q >= 0.0) {
             keep(p + (q - p) * (at_p / (at_p - at_q)));
         }
+        (p, at_p) = (q, at_q);
     }
     if fits {
         *polygon = kept;

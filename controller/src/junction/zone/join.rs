@@ -36,7 +36,7 @@ fn hanging_together(patches: &mut [Option<Patch>], mut patch: Patch) -> Patch {
     let touched = |patches: &mut [Option<Patch>], patch: &Patch| {
         patches
             .iter_mut()
-            .find(|slot| slot.is_some_and(|met| met.touches(patch)))
+            .find(|slot| slot.as_ref().is_some_and(|met| met.touches(patch)))
             .and_then(Option::take)
     };
     // Each round empties a slot. The wider patch may touch one that was passed over.

@@ -25,7 +25,7 @@ use crate::junction::kind::ConflictKind;
 pub(crate) use body::{Body, sharp_kink};
 use body::{Motion, Stage};
 use cell::Cell;
-use clip::meet;
+use clip::{limits, meet};
 use join::{covered, insert};
 use near::near_pieces;
 use patch::Patch;
@@ -185,24 +185,35 @@ pub(crate) fn zone_with_itself(body: &Body<'_>) -> Option<Zone> {
     })
 }
 
-/// Adds what is occupied on one segment of each route, and in the turns before it.
+/// Adds what is occupied on one segment of each route, and in the turns at its ends.
 fn meet_stages(patches: &mut [Option<Patch>; MAX_ZONES], a: &Stage, b: &Stage) {
-    let mut add = |a: &Motion, b: &Motion| {
-        if !covered(patches, &Cell::of(a, b))
-            && let Some(patch) = meet(a, b)
-        {
-            insert(patches, patch);
-        }
-    };
-    add(a.straight(), b.straight());
-    if b.turns_near(a) {
-        b.turns().for_each(|turn| add(a.straight(), &turn));
+    // Most pairs that are near each other never touch, and others are covered: then no turn is looked at for itself.
+    if limits(&a.whole(), &b.whole()).is_none() {
+        return;
     }
-    if a.turns_near(b) {
-        for turn in a.turns() {
-            add(&turn, b.straight());
-            b.turns().for_each(|other| add(&turn, &other));
+    add(patches, a.straight(), b.straight());
+    if !(a.turns_at_all() || b.turns_at_all())
+        || Cell::of_turns(a, b).is_some_and(|cell| covered(patches, &cell))
+    {
+        return;
+    }
+    for turn in b.turns() {
+        add(patches, a.straight(), &turn);
+    }
+    for turn in a.turns() {
+        add(patches, &turn, b.straight());
+        for other in b.turns() {
+            add(patches, &turn, &other);
         }
+    }
+}
+
+/// Adds what is occupied in two motions.
+fn add(patches: &mut [Option<Patch>; MAX_ZONES], a: &Motion, b: &Motion) {
+    if !covered(patches, &Cell::of(a, b))
+        && let Some(patch) = meet(a, b)
+    {
+        insert(patches, patch);
     }
 }
 
