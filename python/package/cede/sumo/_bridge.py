@@ -16,7 +16,7 @@ from typing import Any
 from .._cede import Contract, Drive, Error, Policy, Shield, Track
 from ._demand import write_demand
 from ._measures import CRITICAL, STANDING, STUCK, Measures
-from ._network import MOST_CANDIDATES, STOPS, Movement, Network, Site, Stretch
+from ._network import MOST_CANDIDATES, STOPS, Movement, Network, Place, Site, Stretch
 from ._persons import Person, Walk, nearest, walks_at, zones_of
 
 DRIVERS = ("cede", "profile", "sumo")
@@ -455,11 +455,14 @@ class Bridge:
         """The vehicle on every path that its lane belongs to."""
         places = site.on_lane[car.lane]
         if len(places) > 1 and car.site is site:
-            places = [place for place in places if self._may_take(car, place[0])] or places
+            places = self._expected(car, places) or places
         candidates, rate = [], 1.0
         for movement, stretch in places[:MOST_CANDIDATES]:
-            front = _front(car, stretch)
-            s, rate = movement.place(front)
+            if movement is car.movement:
+                front, s, rate = car.front, car.s, car.rate
+            else:
+                front = _front(car, stretch)
+                s, rate = movement.place(front)
             if front >= 0.0 and s < movement.length:
                 candidates.append((movement.driven if car.shield else movement.path, s))
         if not candidates:
@@ -468,20 +471,20 @@ class Bridge:
         vehicle = site.junction.vehicle(path, s, car.speed * rate)
         return Track(car.number, path, vehicle, or_on=others)
 
-    def _may_take(self, car: Car, movement: Movement) -> bool:
-        """Whether others have to expect the vehicle on this movement."""
+    def _expected(self, car: Car, places: list[Place]) -> list[Place]:
+        """Those of the movements of its lane on which others have to expect the vehicle."""
         if self.settings.intent == "known" or car.lane == car.movement.outgoing:
-            return movement is car.movement
+            return [place for place in places if place[0] is car.movement]
         if self.settings.intent == "hidden" or car.s < car.movement.line - INDICATED:
-            return True
-        signals = self.sumo.vehicle.getSignals(car.name)
-        return movement.direction == _INDICATORS.get(signals & 3, movement.direction)
+            return places
+        turn = _INDICATORS.get(self.sumo.vehicle.getSignals(car.name) & 3)
+        return places if turn is None else [p for p in places if p[0].direction == turn]
 
     def _follow(self, car: Car) -> None:
         """Bring a vehicle's own path and place on it up to date."""
         ahead = self.network.entering.get(car.lane)
         if car.movement is not None:
-            stretch = next((s for s in car.movement.stretches if s.lane == car.lane), None)
+            stretch = car.movement.on.get(car.lane)
             car.on_path = stretch is not None and self._put(car, car.movement, stretch)
             if car.on_path and (ahead in (None, car.site) or car.s < car.movement.clear):
                 return
@@ -599,7 +602,7 @@ class Bridge:
         leader = self.sumo.vehicle.getLeader(car.name, 50.0)
         other = self.cars.get(leader[0]) if leader else None
         # SUMO also names those who are about to merge: they are the shield's matter.
-        if other is None or all(stretch.lane != other.lane for stretch in movement.stretches):
+        if other is None or other.lane not in movement.on:
             return wanted
         if _blocks(car, other, leader[1]):
             wanted = min(wanted, stop)
