@@ -123,7 +123,7 @@ class Movement:
         """Arc length (m) of the centre, and its change with that of the front bumper."""
         at = front / _GRID
         arc, rate, i = self.arc, self.rate, int(at)
-        # Comparisons take half as long as `min` and `max`, and every vehicle is placed at every step.
+        # Comparisons take half as long as `min` and `max`; every vehicle is placed at each step.
         if i < 0:
             i = 0
         elif i > len(arc) - 2:
