@@ -7,13 +7,17 @@ use cede_sim::judge::Judge;
 use chromium::{browser, open};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
-fn url(page: &Path) -> String {
-    format!("file://{}", page.display())
-}
+/// The pages that the tests look at, each made once: without the shield, with it, with both, and of trainings.
+static OFF: LazyLock<String> = LazyLock::new(|| report("off"));
+static ON: LazyLock<String> = LazyLock::new(|| report("on"));
+static BOTH: LazyLock<String> = LazyLock::new(|| report("both"));
+static TRAINED: LazyLock<String> = LazyLock::new(trained);
 
-fn report(folder: &Path, shield: &str) -> PathBuf {
-    let page = folder.join("report.html");
+fn report(shield: &str) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let page = folder.path().join("report.html");
     let mut evaluate = assert_cmd::Command::cargo_bin("cede").unwrap();
     let ended = evaluate
         .args(["evaluate", "--data", "synthetic", "--split", "test"])
@@ -26,7 +30,41 @@ fn report(folder: &Path, shield: &str) -> PathBuf {
     let told = String::from_utf8_lossy(&ended.get_output().stderr);
     let line = format!("report in {}\n", page.display());
     assert!(told.contains(&line), "{told}");
-    page
+    std::fs::read_to_string(page).unwrap()
+}
+
+/// The report of trainings from two seeds.
+fn trained() -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = "reproduce --data synthetic --encounters 60 --rows bc --seeds 2 --set bc.updates=20 --set bc.width=16";
+    assert_cmd::Command::cargo_bin("cede")
+        .unwrap()
+        .args(arguments.split(' '))
+        .arg("--out")
+        .arg(folder.path())
+        .assert()
+        .success();
+    std::fs::read_to_string(folder.path().join("report.html")).unwrap()
+}
+
+/// A page as a file of its own, for as long as this lives.
+struct Opened {
+    folder: tempfile::TempDir,
+}
+
+impl Opened {
+    fn new(html: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("report.html"), html).unwrap();
+        Self { folder }
+    }
+
+    fn url(&self) -> String {
+        format!(
+            "file://{}",
+            self.folder.path().join("report.html").display()
+        )
+    }
 }
 
 /// The element that begins with `begin` and ends with `end`.
@@ -39,8 +77,7 @@ fn part<'p>(page: &'p str, begin: &str, end: &str) -> &'p str {
 #[test]
 fn the_page_draws_itself_without_an_error() {
     let Some(browser) = browser() else { return };
-    let folder = tempfile::tempdir().unwrap();
-    let dom = open(&browser, &url(&report(folder.path(), "off")));
+    let dom = open(&browser, &Opened::new(&OFF).url());
     let root = part(&dom, "<html", ">");
     assert!(!root.contains("data-error"), "{root}");
     assert!(root.contains("data-status=\"ready\""), "{root}");
@@ -64,14 +101,13 @@ fn the_page_draws_itself_without_an_error() {
 #[test]
 fn the_page_says_where_and_why_the_shield_acted() {
     let Some(browser) = browser() else { return };
-    let folder = tempfile::tempdir().unwrap();
-    let page = url(&report(folder.path(), "on"));
-    let dom = open(&browser, &page);
+    let page = Opened::new(&ON);
+    let dom = open(&browser, &page.url());
     let root = part(&dom, "<html", ">");
     assert!(!root.contains("data-error"), "{root}");
     let section = |id: &str| part(&dom, &format!("<section id=\"{id}\""), "</section>");
     let marked = |case: usize| {
-        let dom = open(&browser, &format!("{page}#case={case}"));
+        let dom = open(&browser, &format!("{}#case={case}", page.url()));
         part(&dom, "<section id=\"replay\"", "</section>").contains("s: shielded: ")
     };
     assert!((0..8).any(marked), "no mark");
@@ -80,15 +116,13 @@ fn the_page_says_where_and_why_the_shield_acted() {
 }
 
 /// The page with a script at its end, as the browser leaves it.
-fn open_with(browser: &Path, page: &Path, script: &str) -> String {
-    let html = std::fs::read_to_string(page).unwrap();
+fn open_with(browser: &Path, html: &str, script: &str) -> String {
     let script = format!(
         "<pre id=\"told\"></pre><script>{}</script></body>",
         script.replace("</", "<\\/")
     );
-    let tried = page.with_extension("tried.html");
-    std::fs::write(&tried, html.replace("</body>", &script)).unwrap();
-    let dom = open(browser, &url(&tried));
+    let tried = Opened::new(&html.replace("</body>", &script));
+    let dom = open(browser, &tried.url());
     part(&dom, "<pre id=\"told\">", "</pre>").replace("<pre id=\"told\">", "")
 }
 
@@ -99,9 +133,7 @@ const TELL: &str =
 #[test]
 fn the_worst_moments_open_their_replay() {
     let Some(browser) = browser() else { return };
-    let folder = tempfile::tempdir().unwrap();
-    let page = report(folder.path(), "off");
-    let dom = open(&browser, &url(&page));
+    let dom = open(&browser, &Opened::new(&OFF).url());
     let gallery = part(&dom, "<section id=\"gallery\"", "</section>");
     assert!(
         gallery.contains("Face-offs") || gallery.contains("Near misses"),
@@ -109,7 +141,7 @@ fn the_worst_moments_open_their_replay() {
     );
     let told = open_with(
         &browser,
-        &page,
+        page,
         &format!(
             "{TELL}
         const link = document.querySelector('#moments a');
@@ -126,27 +158,13 @@ fn the_worst_moments_open_their_replay() {
     assert_eq!(told, "true,true,true");
 }
 
-/// The report of trainings from two seeds.
-fn trained(folder: &Path) -> PathBuf {
-    let arguments = "reproduce --data synthetic --encounters 60 --rows bc --seeds 2 --set bc.updates=20 --set bc.width=16";
-    assert_cmd::Command::cargo_bin("cede")
-        .unwrap()
-        .args(arguments.split(' '))
-        .arg("--out")
-        .arg(folder)
-        .assert()
-        .success();
-    folder.join("report.html")
-}
-
 #[test]
 fn a_report_on_trainings_tells_its_seed_and_opens_with_what_was_trained() {
     let Some(browser) = browser() else { return };
-    let folder = tempfile::tempdir().unwrap();
-    let page = trained(folder.path());
+    let page = &TRAINED;
     let told = open_with(
         &browser,
-        &page,
+        page,
         &format!(
             "{TELL}
         const at = (id) => document.getElementById(id);
@@ -164,33 +182,27 @@ fn a_report_on_trainings_tells_its_seed_and_opens_with_what_was_trained() {
 #[test]
 fn margins_show_only_what_has_values() {
     let Some(browser) = browser() else { return };
-    let folder = tempfile::tempdir().unwrap();
-    let page = trained(folder.path());
+    let page = &TRAINED;
     let script = "
         const at = (id) => document.getElementById(id);
         const margins = [at('pet').parentElement.hidden, at('distribution-legend').textContent.includes('recorded')];
         const [lone, row] = [at('ttc').parentElement, at('ttc').closest('.row')].map((e) => e.clientWidth);
         tell([...margins, 2 * lone < row].join());";
-    let told = open_with(&browser, &page, &format!("{TELL} {script}"));
+    let told = open_with(&browser, page, &format!("{TELL} {script}"));
     assert_eq!(told, "true,false,true", "episodes until the first arrival");
-    let told = open_with(
-        &browser,
-        &report(folder.path(), "off"),
-        &format!("{TELL} {script}"),
-    );
+    let told = open_with(&browser, &OFF, &format!("{TELL} {script}"));
     assert_eq!(told, "false,true,true", "episodes until both have left");
 }
 
 #[test]
 fn every_trained_row_is_shown_before_those_behind_a_shield_and_baselines() {
     let Some(browser) = browser() else { return };
-    let folder = tempfile::tempdir().unwrap();
-    let page = report(folder.path(), "off");
+    let page = &OFF;
     let script = "
         const shields = ['', ' + shield (all-way stop)', ' + shield (worst case)'];
         const rows = ['idm', 'bc', 'sacer-v', 'sacer-svo', 'apg'].flatMap((row) => shields.map((shield) => ({ driver: row + shield })));
         tell(few(rows).map(({ driver }) => driver).join());";
-    let told = open_with(&browser, &page, &format!("{TELL} {script}"));
+    let told = open_with(&browser, page, &format!("{TELL} {script}"));
     let behind = "bc + shield (all-way stop),bc + shield (worst case)";
     assert_eq!(told, format!("bc,{behind},sacer-v,sacer-svo,apg"));
 }
@@ -198,8 +210,7 @@ fn every_trained_row_is_shown_before_those_behind_a_shield_and_baselines() {
 #[test]
 fn the_papers_rows_stand_below_those_of_its_protocol() {
     let Some(browser) = browser() else { return };
-    let folder = tempfile::tempdir().unwrap();
-    let page = report(folder.path(), "both");
+    let page = &BOTH;
     let script = "
         const drawn = (row) => {
             const host = document.createElement('div');
@@ -209,15 +220,14 @@ fn the_papers_rows_stand_below_those_of_its_protocol() {
             return [...host.querySelectorAll('tr.paper td')].map((cell) => cell.textContent).join('|');
         };
         tell(drawn({ until: 'conflict' }) + ';' + drawn({ until: 'cleared' }));";
-    let told = open_with(&browser, &page, &format!("{TELL} {script}"));
+    let told = open_with(&browser, page, &format!("{TELL} {script}"));
     assert_eq!(told, "paper: BC|64.7 %|0.576|0|||||;");
 }
 
 #[test]
 fn a_chart_is_saved_with_its_colours() {
     let Some(browser) = browser() else { return };
-    let folder = tempfile::tempdir().unwrap();
-    let page = report(folder.path(), "off");
+    let page = &OFF;
     let script = format!(
         "{TELL}
         const files = [];
@@ -232,7 +242,7 @@ fn a_chart_is_saved_with_its_colours() {
         }})();"
     );
     // The browser's time runs on while an image is decoded: on a busy machine it may be over first.
-    let mut attempts = (0..5).map(|_| open_with(&browser, &page, &script));
+    let mut attempts = (0..5).map(|_| open_with(&browser, page, &script));
     let told = attempts.find(|told| !told.is_empty()).unwrap_or_default();
     let kinds = "image/svg+xml,image/svg+xml,image/png,image/png";
     assert_eq!(told, format!("{kinds} false true true"));
@@ -255,14 +265,13 @@ fn the_page_is_accessible() {
     let (Some(browser), Some(axe)) = (browser(), axe()) else {
         return;
     };
-    let folder = tempfile::tempdir().unwrap();
-    let page = report(folder.path(), "both");
+    let page = &BOTH;
     let audit = |before: &str| {
         let rules = "['wcag2a', 'wcag2aa', 'wcag21aa', 'best-practice']";
         let script = format!("{TELL} {before} {axe};
             axe.run({{ runOnly: {rules} }}).then(({{ violations, passes }}) =>
                 tell(`${{passes.length > 20}} ${{violations.map((v) => v.id + ': ' + v.nodes[0].target).join('; ')}}`));");
-        open_with(&browser, &page, &script)
+        open_with(&browser, page, &script)
     };
     assert_eq!(audit("").trim(), "true");
     assert_eq!(
@@ -276,13 +285,9 @@ fn the_page_is_accessible() {
 #[test]
 fn a_broken_script_is_noticed() {
     let Some(browser) = browser() else { return };
-    let folder = tempfile::tempdir().unwrap();
-    let page = report(folder.path(), "off");
-    let html = std::fs::read_to_string(&page).unwrap();
-    let broken = html.replacen("tables(document", "tablez(document", 1);
-    assert_ne!(html, broken);
-    std::fs::write(&page, broken).unwrap();
-    let dom = open(&browser, &url(&page));
+    let broken = OFF.replacen("tables(document", "tablez(document", 1);
+    assert_ne!(*OFF, broken);
+    let dom = open(&browser, &Opened::new(&broken).url());
     let root = part(&dom, "<html", ">");
     assert!(
         root.contains("data-error") && !root.contains("data-status"),
@@ -292,8 +297,6 @@ fn a_broken_script_is_noticed() {
 
 #[test]
 fn the_page_needs_no_network() {
-    let folder = tempfile::tempdir().unwrap();
-    let html = std::fs::read_to_string(report(folder.path(), "off")).unwrap();
     for reference in [
         "src=\"http",
         "href=\"http",
@@ -302,7 +305,7 @@ fn the_page_needs_no_network() {
         "fetch(",
         "XMLHttpRequest",
     ] {
-        assert!(!html.contains(reference), "{reference}");
+        assert!(!OFF.contains(reference), "{reference}");
     }
 }
 

@@ -48,9 +48,9 @@ def main(kinds, file):
                 demanded = total(runs, "demanded")
                 print(f"| `{kind}` | {demand:.0f} | {demanded} | {' | '.join(cells)} |", flush=True)
     print(
-        "\n| driver, share | runs | arrived | stuck | collisions (of driven) | jerk RMS, m/s³ "
-        "| lateral, m/s²: greatest; runs above 3.5 | share without a plan | µs a decision |\n"
-        "|---|---|---|---|---|---|---|---|---|"
+        "\n| driver, share | runs | arrived | stuck | longest wait, s | collisions (of driven) "
+        "| jerk RMS, m/s³ | lateral, m/s²: greatest; runs above 3.5 | share without a plan | µs a decision |\n"
+        "|---|---|---|---|---|---|---|---|---|---|"
     )
     for driver, runs in everything.items():
         print(f"| {name(*driver)} | {sums(runs)} |")
@@ -89,6 +89,7 @@ def sums(runs):
             f"{len(runs)}",
             f"{total(runs, 'arrived')} of {total(runs, 'demanded')}",
             f"{total(runs, 'stuck')}",
+            f"{max(run['max_wait_s'] for run in runs):.0f}",
             f"{total(runs, 'collisions')} ({total(runs, 'ego_collisions')})",
             mean(runs, "jerk_rms"),
             f"{max(lateral):.1f}; {sum(a > 3.5 for a in lateral)}",

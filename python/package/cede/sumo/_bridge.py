@@ -114,6 +114,10 @@ class Car:
     site: Site | None = None
     movement: Movement | None = None
     """The way that it takes, or has taken last."""
+    followed: str = ""
+    """The lane on which its path was looked up last."""
+    placed: float = -1.0
+    """The time (s) of what follows."""
     on_path: bool = False
     front: float = 0.0
     """Place (m) of its front bumper along its movement."""
@@ -453,6 +457,7 @@ class Bridge:
 
     def _new_track(self, site: Site, car: Car) -> Track | None:
         """The vehicle on every path that its lane belongs to."""
+        self._place(car)
         places = site.on_lane[car.lane]
         if len(places) > 1 and car.site is site:
             places = self._expected(car, places) or places
@@ -481,11 +486,17 @@ class Bridge:
         return places if turn is None else [p for p in places if p[0].direction == turn]
 
     def _follow(self, car: Car) -> None:
-        """Bring a vehicle's own path and place on it up to date."""
+        """Bring a vehicle's own path up to date, and its place on it.
+
+        Of one that is not driven the path is known while it stays in a lane that leads to no other
+        junction, and its place is asked for where it matters.
+        """
         ahead = self.network.entering.get(car.lane)
+        if not car.chosen and car.lane == car.followed and ahead in (None, car.site):
+            return
+        car.followed = car.lane
         if car.movement is not None:
-            stretch = car.movement.on.get(car.lane)
-            car.on_path = stretch is not None and self._put(car, car.movement, stretch)
+            self._place(car)
             if car.on_path and (ahead in (None, car.site) or car.s < car.movement.clear):
                 return
         if car.shield is not None and (ahead is not None or not car.on_path):
@@ -493,15 +504,21 @@ class Bridge:
         if ahead is not None and ahead is not car.site:
             self._enter(car, ahead)
 
+    def _place(self, car: Car) -> None:
+        """Bring a vehicle's place on its own path up to date."""
+        if car.placed != self._now and car.movement is not None:
+            stretch = car.movement.on.get(car.lane)
+            car.on_path = stretch is not None and self._put(car, car.movement, stretch)
+
     def _enter(self, car: Car, site: Site) -> None:
         movement, stretch = self._way(car, site)
         if movement is not None and self._put(car, movement, stretch):
             car.site, car.movement, car.on_path = site, movement, True
             car.stopped = not (self.settings.stops and movement.state in STOPS)
 
-    @staticmethod
-    def _put(car: Car, movement: Movement, stretch: Stretch) -> bool:
+    def _put(self, car: Car, movement: Movement, stretch: Stretch) -> bool:
         """Put a vehicle where it is on a movement; whether that is on its path."""
+        car.placed = self._now
         car.front = _front(car, stretch)
         car.s, car.rate = movement.place(car.front)
         return car.front >= 0.0 and car.s < movement.length - 1.0
@@ -630,13 +647,17 @@ class Bridge:
         """
         if car.speed > CREEPING or not -AT_LINE < car.s - car.movement.line < NOSE:
             return False
-        inside = (
+        here = (
             other
             for other in self.cars.values()
-            if other.shield is None and other.on_path and other.site is car.site
-            if other.speed >= STANDING and other.s > other.movement.line
+            if other.shield is None and other.site is car.site and other.speed >= STANDING
         )
-        return any(_crosses(car, other) for other in inside)
+        return any(self._inside(other) and _crosses(car, other) for other in here)
+
+    def _inside(self, car: Car) -> bool:
+        """Whether a vehicle is past its line."""
+        self._place(car)
+        return car.on_path and car.s > car.movement.line
 
     @staticmethod
     def _allowed(car: Car) -> float:

@@ -486,11 +486,23 @@ class _Way:
         return float(np.interp(self.stretches[1].start - self.short, self.fronts, self.arc))
 
     def curvature(self) -> np.ndarray:
-        """By how much (rad) the path of the centre turns a metre, over a window of a few metres."""
+        """By how much (rad) the path of the centre turns a metre.
+
+        From its mean heading over a window before a place to that over the window beyond it: lanes
+        are polylines, whose corners no vehicle takes as such.
+        """
         moved = np.diff(self.centre, axis=0, append=2 * self.centre[-1:] - self.centre[-2:-1])
         heading = np.unwrap(np.arctan2(moved[:, 1], moved[:, 0]))
-        ends = (np.interp(self.arc + side * _WINDOW, self.arc, heading) for side in (-0.5, 0.5))
-        return np.abs(np.subtract(*ends)) / _WINDOW
+        steps = np.diff(self.arc) * (heading[1:] + heading[:-1]) / 2
+        total = np.concatenate([[0.0], np.cumsum(steps)])
+
+        def up_to(place: np.ndarray) -> np.ndarray:
+            before, beyond = np.minimum(place, 0.0), np.maximum(place - self.arc[-1], 0.0)
+            inside = np.interp(place, self.arc, total)
+            return inside + before * heading[0] + beyond * heading[-1]
+
+        before, here, beyond = (up_to(self.arc + side * _WINDOW) for side in (-1.0, 0.0, 1.0))
+        return np.abs(beyond - 2.0 * here + before) / _WINDOW**2
 
 
 def _arc(points: np.ndarray) -> np.ndarray:
