@@ -201,6 +201,7 @@ def test_who_has_set_off_is_let_pass(tmp_path):
             True,
             site=site,
             movement=movement,
+            placed=0.0,
             on_path=True,
             s=movement.line + beyond,
             speed=speed,

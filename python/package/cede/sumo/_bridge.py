@@ -149,6 +149,8 @@ class Bridge:
     demand: float | None = None
     pedestrians: float = 0.0
     measures: Measures = field(default_factory=Measures)
+    _now: float = field(default=0.0, init=False)
+    """Seconds since the start."""
 
     def run(self) -> Measures:
         """Run to the end; the measures are returned."""
