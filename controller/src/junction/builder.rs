@@ -14,6 +14,7 @@ use crate::junction::polyline::within;
 use crate::junction::prepared::{Junction, MAX_LATERAL, MAX_TOLERANCE};
 use crate::junction::route::Route;
 use crate::junction::zone::{Body, sharp_kink};
+use crate::real::Real;
 use heapless::Vec;
 
 /// The tolerance (m) of a junction that was not given one.
@@ -395,11 +396,7 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
 
     fn lower_line(&mut self, i: usize, entries: impl Iterator<Item = f32>) {
         if let Some(path) = self.junction.paths.get_mut(i) {
-            for entry in entries {
-                if entry < path.line {
-                    path.line = entry;
-                }
-            }
+            path.line = entries.fold(path.line, Real::min);
         }
     }
 
@@ -478,7 +475,8 @@ fn is_straight(points: &[Point], from: usize, to: usize) -> bool {
     let along = end - start;
     let far = length(&along);
     let mut last = 0.0;
-    let between = points.get(from + 1..to).unwrap_or_default();
+    // The first of the two is on the line.
+    let between = points.get(from..to).unwrap_or_default();
     between.iter().all(|point| {
         let (ahead, beside) = (along.dot(&(point - start)), along.perp(&(point - start)));
         let forwards = ahead >= last;

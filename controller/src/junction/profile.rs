@@ -3,6 +3,7 @@
 use crate::junction::path::SpeedLimit;
 use crate::junction::polyline::{Piece, Polyline};
 use crate::real::{Real, sqrt};
+use core::ops::Range;
 
 /// Braking (m/s²) with which a vehicle comes down to a lower speed ahead.
 pub const COMFORT: f32 = 1.5;
@@ -64,8 +65,8 @@ impl<'j> Profile<'j> {
     #[must_use]
     pub fn acceleration(self, s: f32, speed: f32, response: f32) -> f32 {
         let time = SMOOTH + response;
-        let sight = speed * speed * (0.5 / COMFORT) + 2.0 * speed * time + WINDOW;
-        let ahead = self.stretches(s, s + sight).filter(|it| s < it.to);
+        let ahead = self.stretches(s, s + sight(speed, time));
+        let ahead = ahead.filter(|it| s < it.to);
         ahead.fold(f32::INFINITY, |least, it| {
             Real::min(least, slowing(it.speed, it.from - s, speed, time))
         })
@@ -85,14 +86,20 @@ impl<'j> Profile<'j> {
 
     /// The bends of which a part is between two arc lengths (m).
     fn bends(self, from: f32, to: f32) -> impl Iterator<Item = Stretch> + use<'j> {
-        let arc = if self.lateral.is_finite() {
-            self.polyline.arc()
+        let corners = if self.lateral.is_finite() {
+            self.corners(from, to)
         } else {
-            &[]
+            0..0
         };
+        corners.filter_map(move |corner| self.bend(corner))
+    }
+
+    /// The points at which bends may begin of which a part is between two arc lengths (m).
+    fn corners(self, from: f32, to: f32) -> Range<usize> {
+        let arc = self.polyline.arc();
         let first = arc.partition_point(|&s| s < from - 2.0 * WINDOW).max(1);
         let last = arc.partition_point(|&s| s < to + WINDOW);
-        (first..last).filter_map(move |corner| self.bend(corner))
+        first..last
     }
 
     /// The bend that begins at point number `corner`: as much as the path turns from there on over a window.
@@ -124,6 +131,12 @@ impl<'j> Profile<'j> {
         // Straight on, anything is allowed.
         speed.is_finite().then_some(Stretch { from, to, speed })
     }
+}
+
+/// How far (m) ahead a vehicle at `speed` (m/s) looks that keeps to what is allowed after some `time` (s): it can stop at
+/// [`COMFORT`].
+fn sight(speed: f32, time: f32) -> f32 {
+    speed * speed * (0.5 / COMFORT) + 2.0 * speed * time + WINDOW
 }
 
 /// Half a piece (m), or half a window.

@@ -184,7 +184,7 @@ fn clear_of<R: Rules>(conflict: &RouteConflict, zone: &Zone, ego: &Own, other: &
         |it: &&Zone| !it.is_lane() && ego.least < it.ego.to && !R::left(it, other.bounds.s.from);
     // As often as there are zones before the last one.
     (1..MAX_ZONES).fold(zone.ego.from, |from, _| {
-        let meets = |it: &&Zone| it.ego.from < from && from <= it.ego.to;
+        let meets = |it: &&Zone| it.ego.contains(from);
         let before = conflict.zones().filter(open).filter(meets);
         before.map(|it| it.ego.from).fold(from, Real::min)
     })

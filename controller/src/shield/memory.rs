@@ -8,9 +8,10 @@ use super::own::Own;
 use super::reach::Reach;
 use crate::headroom::Room;
 use crate::instant::{Instant, micros};
-use crate::junction::zone::{FAR, Span};
+use crate::junction::zone::Span;
 use crate::observation::Vehicle;
 use crate::plan::Plan;
+use crate::real::Real;
 
 /// What is left of the plan that was verified last.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +42,7 @@ impl Memory {
             remembered: None,
             commands: Commands::unknown(),
             last: None,
-            least: -FAR,
+            least: f32::NEG_INFINITY,
             blind: 0,
         }
     }
@@ -125,7 +126,12 @@ impl Memory {
         let common = expected.map(|expected| both(contract, expected, seen));
         let possible = common.filter(|&(_, rooms)| Room::hold(rooms));
         let unknown = common.is_none() || possible.is_some();
-        let own = Own::new(contract, ego, if unknown { self.least } else { -FAR });
+        let least = if unknown {
+            self.least
+        } else {
+            f32::NEG_INFINITY
+        };
+        let own = Own::new(contract, ego, least);
         self.last = Some((possible.map_or(seen, |(bounds, _)| bounds), now));
         self.least = own.least;
         self.blind = 0;
@@ -173,14 +179,12 @@ impl Memory {
 /// What is in both, and what is left of place and speed until that is empty by more than rounding.
 fn both(contract: &Contract, expected: Bounds, seen: Bounds) -> (Bounds, [Room; 2]) {
     let common = |a: Span, b: Span| {
-        let from = if a.from > b.from { a.from } else { b.from };
-        let to = if a.to < b.to { a.to } else { b.to };
+        let (from, to) = (Real::max(b.from, a.from), Real::min(b.to, a.to));
         let rounded = Span {
-            from: if from < to { from } else { to },
-            to: if from < to { to } else { from },
+            from: Real::min(to, from),
+            to: Real::max(from, to),
         };
-        let (a, b) = (a.to - a.from, b.to - b.from);
-        let most = if a < b { a } else { b } + contract.slack;
+        let most = Real::min(b.to - b.from, a.to - a.from) + contract.slack;
         (rounded, Room::of(to + contract.slack - from, most))
     };
     let (s, place) = common(expected.s, seen.s);
