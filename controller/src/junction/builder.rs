@@ -513,3 +513,22 @@ fn checked_polyline(path: PathId, polyline: Polyline<'_>) -> Result<(), Junction
         None => Ok(()),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_that_turn_back_are_not_on_a_straight_line() {
+        let straight = |xs: &[f32], beside: f32| {
+            let points = xs.iter().zip((0_u8..).map(|i| beside * f32::from(i % 2)));
+            let points: std::vec::Vec<_> = points.map(|(&x, y)| Point::new(x, y)).collect();
+            is_straight(&points, 0, points.len() - 1)
+        };
+        assert!(straight(&[0.0, 4.0, 10.0], 0.0) && straight(&[0.0, 4.0, 10.0], 0.0009));
+        assert!(!straight(&[0.0, 4.0, 10.0], 0.0011));
+        assert!(!straight(&[0.0, 6.0, 4.0, 10.0], 0.0), "back");
+        assert!(!straight(&[0.0, 11.0, 10.0], 0.0), "beyond the end");
+        assert!(!straight(&[0.0, -1.0, 10.0], 0.0), "before the start");
+    }
+}

@@ -297,6 +297,13 @@ mod tests {
         );
     }
 
+    #[test]
+    fn of_two_limits_from_one_place_on_the_last_one_counts() {
+        let site = site(&bend(12.0, 12), &[(20.0, 9.0), (20.0, 7.0)], None).unwrap();
+        let profile = site.way(PATH).unwrap().profile();
+        assert_eq!(profile.speed(30.0), 7.0);
+    }
+
     /// Pieces of these lengths (m), with a turn to the left, or to the right, by `degrees` before each but the first.
     fn polygon(lengths: &[f32], degrees: f32) -> Site {
         let (mut at, mut heading) = (Point::origin(), 0.0_f32);
@@ -367,6 +374,20 @@ mod tests {
             40.0,
             &[(7.1, 2.3441), (12.8, 2.3441), (13.0, ANY)],
         );
+    }
+
+    #[test]
+    fn one_looks_as_far_ahead_as_it_takes_to_stop_and_two_windows_back() {
+        let near = |a: f32, b: f32| assert!((a - b).abs() < 1e-4, "{a}, {b}");
+        // 33.33 m at 1.5 m/s², what it goes in twice the time, and a window.
+        near(sight(10.0, 0.5), 33.333_33 + 10.0 + 4.0);
+        near(sight(3.0, 1.5), 3.0 + 9.0 + 4.0);
+        let site = polygon(&[2.0; 30], 1.0);
+        let profile = site.way(PATH).unwrap().profile();
+        let all = |from, to| profile.corners(from, to);
+        // Of points 2 m apart: from 12 m on, and up to before 34 m.
+        assert_eq!([all(20.0, 30.0), all(19.9, 30.1)], [6..17, 6..18]);
+        assert_eq!([all(3.0, 3.0), all(90.0, 99.0)], [1..4, 31..31]);
     }
 
     #[test]

@@ -195,6 +195,7 @@ fn both(contract: &Contract, expected: Bounds, seen: Bounds) -> (Bounds, [Room; 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shield::contract::tests::INEXACT;
 
     fn bounds(s: [f32; 2], speed: [f32; 2]) -> Bounds {
         let span = |[from, to]: [f32; 2]| Span { from, to };
@@ -259,6 +260,28 @@ mod tests {
         assert_eq!(memory.plan(), None);
     }
 
+    /// The ego, 10 m along its path.
+    fn ego(speed: f32) -> Vehicle {
+        Vehicle {
+            s: 10.0,
+            speed,
+            pose: crate::geometry::Pose {
+                position: crate::geometry::Point::origin(),
+                direction: crate::geometry::unit(1.0, 0.0),
+            },
+        }
+    }
+
+    #[track_caller]
+    fn close(a: Bounds, b: Bounds) {
+        let near = |a: f32, b: f32| (a - b).abs() < 1e-4;
+        let spans = [(a.s, b.s), (a.speed, b.speed)];
+        let same = spans
+            .iter()
+            .all(|(a, b)| near(a.from, b.from) && near(a.to, b.to));
+        assert!(same, "{a:?}, {b:?}");
+    }
+
     /// By what was commanded; by anything, if a call was missed.
     #[test]
     fn the_ego_is_expected_where_its_commands_lead() {
@@ -269,29 +292,13 @@ mod tests {
             .unwrap();
         let at = Instant::from_millis;
         let mut memory = Memory::new();
-        let ego = Vehicle {
-            s: 10.0,
-            speed: 8.0,
-            pose: crate::geometry::Pose {
-                position: crate::geometry::Point::origin(),
-                direction: crate::geometry::unit(1.0, 0.0),
-            },
-        };
         assert_eq!(memory.least_speed(&contract, at(0)), 0.0);
         for millis in [0, 100, 200, 300] {
             memory.call(&contract, at(millis));
             memory.command(&contract, 1.0, at(millis));
         }
-        memory.note(&contract, &ego, at(300));
+        memory.note(&contract, &ego(8.0), at(300));
         memory.call(&contract, at(400));
-        let close = |a: Bounds, b: Bounds| {
-            let near = |a: f32, b: f32| (a - b).abs() < 1e-4;
-            let spans = [(a.s, b.s), (a.speed, b.speed)];
-            let same = spans
-                .iter()
-                .all(|(a, b)| near(a.from, b.from) && near(a.to, b.to));
-            assert!(same, "{a:?}, {b:?}");
-        };
         let expected = memory.expected(&contract, at(400)).unwrap();
         close(expected, bounds([9.5 + 0.785, 10.5 + 0.825], [7.9, 8.3]));
         assert!((memory.least_speed(&contract, at(400)) - 7.9).abs() < 1e-4);
@@ -300,5 +307,35 @@ mod tests {
         close(expected, bounds([9.5 + 1.5, 10.5 + 1.7], [7.2, 8.8]));
         memory.forget_ego();
         assert_eq!(memory.expected(&contract, at(500)), None);
+    }
+
+    /// Faster than it certainly goes, an inexact ego may slow down when it goes: by 4/3 m/s² at most, beside 8 m/s² of brakes.
+    #[test]
+    fn a_fast_ego_is_expected_to_give_way_to_what_nobody_commands() {
+        let mut memory = Memory::new();
+        let at = Instant::from_millis;
+        memory.note(&INEXACT, &ego(12.0), at(0));
+        let expected = memory.expected(&INEXACT, at(100)).unwrap();
+        close(
+            expected,
+            bounds([9.8 + 1.136_67, 10.2 + 1.225], [10.966_67, 12.4]),
+        );
+    }
+
+    #[test]
+    fn what_the_ego_has_passed_it_has_passed_unless_it_is_not_where_its_commands_lead() {
+        let contract = Contract::builder().position_error(0.5).build().unwrap();
+        let least = |then: Vehicle| {
+            let mut memory = Memory::new();
+            let at = Instant::from_millis;
+            let (first, none) = memory.note(&contract, &ego(0.0), at(0));
+            assert_eq!((first.least, none), (9.5, None));
+            let (own, rooms) = memory.note(&contract, &then, at(100));
+            (own.least, Room::hold(rooms.unwrap()))
+        };
+        let at = |s, speed| Vehicle { s, ..ego(speed) };
+        assert_eq!(least(at(9.75, 0.0)), (9.5, true));
+        assert_eq!(least(at(9.75, 5.0)), (9.25, false));
+        assert_eq!(least(at(30.0, 0.0)), (29.5, false));
     }
 }

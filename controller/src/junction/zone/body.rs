@@ -529,4 +529,19 @@ mod tests {
             assert!((angle - 100.0).abs() < 0.01);
         }
     }
+
+    /// By 1.5° on either side, at once: 0.75° from the middle.
+    #[test]
+    fn a_bend_of_less_than_a_step_is_one_turn() {
+        let route = corner(3.0);
+        let body = Body::new(route.polyline(), CAR, 0.0);
+        for (i, heading) in [(0, 0.75), (1, 2.25)] {
+            let turns: std::vec::Vec<Motion> = body.stage(i).unwrap().turns().collect();
+            assert_eq!(turns.len(), 1);
+            let direction = turns[0].direction;
+            assert!((direction.y.atan2(direction.x).to_degrees() - heading).abs() < 1e-2);
+            near(turns[0].half.0, 2.02 + 2.5 * 0.75_f32.to_radians());
+            near(turns[0].half.1, 1.52 + 2.5 * 0.75_f32.to_radians());
+        }
+    }
 }

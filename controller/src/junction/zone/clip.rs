@@ -223,6 +223,30 @@ mod tests {
     }
 
     #[test]
+    fn motions_are_far_apart_beyond_all_their_lengths() {
+        let a = Motion {
+            half: (3.0, 1.5),
+            ..motion((0.0, 0.0), 0.0, 6.0)
+        };
+        let b = motion((0.0, 0.0), 0.0, 9.0);
+        let apart = |x: f32, y: f32| far_apart(&a, &b, Vector::new(x, y));
+        // 6 + 9 + 3 + 1.5 + 2.5 + 1 m.
+        assert!(!apart(22.9, 0.0) && !apart(0.0, -22.9) && !apart(-23.0, 0.0));
+        assert!(apart(-23.1, 0.0) && apart(0.0, 23.1) && apart(17.0, 17.0));
+    }
+
+    #[test]
+    fn a_limit_excludes_what_is_beyond_its_radius_on_either_side() {
+        let limit = Limit {
+            radius: 3.0,
+            ..Limit::default()
+        };
+        let excludes = |from, to| limit.excludes(Span { from, to });
+        assert!(excludes(3.1, 9.0) && excludes(-9.0, -3.1));
+        assert!(!excludes(3.0, 9.0) && !excludes(-9.0, -3.0) && !excludes(-9.0, 9.0));
+    }
+
+    #[test]
     fn a_limit_is_linear_in_both_arc_lengths() {
         let limit = |along, other_along| Limit {
             radius: 3.0,
