@@ -154,7 +154,7 @@ pub enum Breach {
 }
 
 impl Decision {
-    /// Nothing was decided: the ego's `acceleration` (m/s²) is that of its brakes.
+    /// Of no more than the ego's `acceleration` (m/s²): nothing is safe, and nothing else is known.
     pub(crate) const fn none(acceleration: f32) -> Self {
         Self {
             acceleration,

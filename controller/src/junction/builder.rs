@@ -14,6 +14,7 @@ use crate::junction::polyline::within;
 use crate::junction::prepared::{Junction, MAX_LATERAL, MAX_TOLERANCE};
 use crate::junction::route::Route;
 use crate::junction::zone::{Body, sharp_kink};
+use crate::real::Real;
 use heapless::Vec;
 
 /// The tolerance (m) of a junction that was not given one.
@@ -395,11 +396,7 @@ impl<const R: usize, const P: usize, const E: usize> JunctionBuilder<R, P, E> {
 
     fn lower_line(&mut self, i: usize, entries: impl Iterator<Item = f32>) {
         if let Some(path) = self.junction.paths.get_mut(i) {
-            for entry in entries {
-                if entry < path.line {
-                    path.line = entry;
-                }
-            }
+            path.line = entries.fold(path.line, Real::min);
         }
     }
 
@@ -478,7 +475,8 @@ fn is_straight(points: &[Point], from: usize, to: usize) -> bool {
     let along = end - start;
     let far = length(&along);
     let mut last = 0.0;
-    let between = points.get(from + 1..to).unwrap_or_default();
+    // The first of the two is on the line.
+    let between = points.get(from..to).unwrap_or_default();
     between.iter().all(|point| {
         let (ahead, beside) = (along.dot(&(point - start)), along.perp(&(point - start)));
         let forwards = ahead >= last;
@@ -513,5 +511,24 @@ fn checked_polyline(path: PathId, polyline: Polyline<'_>) -> Result<(), Junction
     match sharp_kink(polyline) {
         Some((at, degrees)) => Err(JunctionError::Kink { path, at, degrees }),
         None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_that_turn_back_are_not_on_a_straight_line() {
+        let straight = |xs: &[f32], beside: f32| {
+            let points = xs.iter().zip((0_u8..).map(|i| beside * f32::from(i % 2)));
+            let points: std::vec::Vec<_> = points.map(|(&x, y)| Point::new(x, y)).collect();
+            is_straight(&points, 0, points.len() - 1)
+        };
+        assert!(straight(&[0.0, 4.0, 10.0], 0.0) && straight(&[0.0, 4.0, 10.0], 0.0009));
+        assert!(!straight(&[0.0, 4.0, 10.0], 0.0011));
+        assert!(!straight(&[0.0, 6.0, 4.0, 10.0], 0.0), "back");
+        assert!(!straight(&[0.0, 11.0, 10.0], 0.0), "beyond the end");
+        assert!(!straight(&[0.0, -1.0, 10.0], 0.0), "before the start");
     }
 }

@@ -138,6 +138,7 @@ mod tests {
     use super::*;
     use crate::geometry::{Footprint, Point};
     use crate::junction::route::Route;
+    use crate::junction::zone::Span;
 
     #[test]
     fn swapped_twice_is_the_conflict_itself() {
@@ -154,5 +155,39 @@ mod tests {
         assert_eq!(swapped.zones().count(), 2);
         assert_eq!(swapped.ego_conflict, conflict.other_conflict);
         assert_eq!(swapped.swapped(), conflict);
+    }
+
+    fn zone(ego: f32, other: f32, kind: ConflictKind) -> Zone {
+        let span = |from| Span {
+            from,
+            to: from + 9.0,
+        };
+        let lead = Span {
+            from: -5.0,
+            to: 5.0,
+        };
+        let (ego, other) = (span(ego), span(other));
+        Zone {
+            ego,
+            other,
+            lead,
+            kind,
+        }
+    }
+
+    #[test]
+    fn routes_meet_like_the_zone_that_comes_first_for_each_of_them() {
+        let crossing = zone(10.0, 50.0, ConflictKind::Crossing);
+        let lane = zone(20.0, 30.0, ConflictKind::Merging);
+        let conflict = RouteConflict {
+            kind: ConflictKind::Crossing,
+            zones: [Some(lane), Some(crossing), None],
+            ..RouteConflict::NONE
+        };
+        assert_eq!(first(&conflict.zones), Some(&crossing));
+        assert_eq!(conflict.swapped().kind, ConflictKind::Merging);
+        // Of two that begin at one place, the first.
+        let other = zone(20.0, 90.0, ConflictKind::Crossing);
+        assert_eq!(first(&[Some(lane), Some(other), None]), Some(&lane));
     }
 }

@@ -3,7 +3,7 @@
 use crate::geometry::Point;
 use crate::junction::polyline::{Piece, Polyline, within};
 use crate::junction::zone::{Span, Zone, Zones};
-use crate::real::sqrt;
+use crate::real::{Real, sqrt};
 
 /// A vehicle has reached the conflict point when it is nearer to it than this (m): the paper's rule.
 pub const CONFLICT_RADIUS: f32 = 5.0;
@@ -36,9 +36,7 @@ fn crossing(a: Polyline<'_>, b: Polyline<'_>, zones: &Zones) -> Option<Point> {
     for p in pieces(a).filter(|p| within(p, |zone| zone.ego)) {
         let others = pieces(b).filter(|q| within(q, |zone| zone.other));
         let alongs = others.filter_map(|q| cross(p.start, p.end, q.start, q.end));
-        if let Some(along) =
-            alongs.reduce(|nearest, along| if along < nearest { along } else { nearest })
-        {
+        if let Some(along) = alongs.reduce(Real::min) {
             return Some(p.start + (p.end - p.start) * along);
         }
     }

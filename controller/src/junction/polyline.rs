@@ -1,6 +1,7 @@
 //! Points with their arc lengths, wherever they are kept.
 
 use crate::geometry::{Point, Pose, Vector, distance, unit};
+use crate::real::Real;
 
 /// A view of a polyline, addressed by arc length `s` in metres from its first point.
 ///
@@ -114,11 +115,27 @@ impl<'a> Polyline<'a> {
 
 /// `value` in [0, `length`].
 pub(super) fn within(value: f32, length: f32) -> f32 {
-    if value < 0.0 {
-        0.0
-    } else if value > length {
-        length
-    } else {
-        value
+    Real::min(Real::max(value, 0.0), length)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_two_places_as_near_the_first_is_projected_to() {
+        let points = [(0.0, 0.0), (10.0, 0.0), (10.0, 4.0), (0.0, 4.0)];
+        let points = points.map(|(x, y)| Point::new(x, y));
+        let line = Polyline::new(&points, &[0.0, 10.0, 14.0, 24.0]);
+        let at = |x, y| line.project(Point::new(x, y));
+        assert_eq!([at(5.0, 2.0), at(5.0, 1.9), at(5.0, 2.1)], [5.0, 5.0, 19.0]);
+    }
+
+    #[test]
+    fn what_is_beyond_an_end_is_at_the_end() {
+        assert_eq!(
+            [-0.1, 0.0, 1.0, 3.0, 3.1].map(|s| within(s, 3.0)),
+            [0.0, 0.0, 1.0, 3.0, 3.0]
+        );
     }
 }

@@ -3,6 +3,7 @@
 use crate::junction::path::SpeedLimit;
 use crate::junction::polyline::{Piece, Polyline};
 use crate::real::{Real, sqrt};
+use core::ops::Range;
 
 /// Braking (m/s²) with which a vehicle comes down to a lower speed ahead.
 pub const COMFORT: f32 = 1.5;
@@ -64,8 +65,8 @@ impl<'j> Profile<'j> {
     #[must_use]
     pub fn acceleration(self, s: f32, speed: f32, response: f32) -> f32 {
         let time = SMOOTH + response;
-        let sight = speed * speed * (0.5 / COMFORT) + 2.0 * speed * time + WINDOW;
-        let ahead = self.stretches(s, s + sight).filter(|it| s < it.to);
+        let ahead = self.stretches(s, s + sight(speed, time));
+        let ahead = ahead.filter(|it| s < it.to);
         ahead.fold(f32::INFINITY, |least, it| {
             Real::min(least, slowing(it.speed, it.from - s, speed, time))
         })
@@ -85,14 +86,20 @@ impl<'j> Profile<'j> {
 
     /// The bends of which a part is between two arc lengths (m).
     fn bends(self, from: f32, to: f32) -> impl Iterator<Item = Stretch> + use<'j> {
-        let arc = if self.lateral.is_finite() {
-            self.polyline.arc()
+        let corners = if self.lateral.is_finite() {
+            self.corners(from, to)
         } else {
-            &[]
+            0..0
         };
+        corners.filter_map(move |corner| self.bend(corner))
+    }
+
+    /// The points at which bends may begin of which a part is between two arc lengths (m).
+    fn corners(self, from: f32, to: f32) -> Range<usize> {
+        let arc = self.polyline.arc();
         let first = arc.partition_point(|&s| s < from - 2.0 * WINDOW).max(1);
         let last = arc.partition_point(|&s| s < to + WINDOW);
-        (first..last).filter_map(move |corner| self.bend(corner))
+        first..last
     }
 
     /// The bend that begins at point number `corner`: as much as the path turns from there on over a window.
@@ -124,6 +131,12 @@ impl<'j> Profile<'j> {
         // Straight on, anything is allowed.
         speed.is_finite().then_some(Stretch { from, to, speed })
     }
+}
+
+/// How far (m) ahead a vehicle at `speed` (m/s) looks that keeps to what is allowed after some `time` (s): it can stop at
+/// [`COMFORT`].
+fn sight(speed: f32, time: f32) -> f32 {
+    speed * speed * (0.5 / COMFORT) + 2.0 * speed * time + WINDOW
 }
 
 /// Half a piece (m), or half a window.
@@ -284,6 +297,13 @@ mod tests {
         );
     }
 
+    #[test]
+    fn of_two_limits_from_one_place_on_the_last_one_counts() {
+        let site = site(&bend(12.0, 12), &[(20.0, 9.0), (20.0, 7.0)], None).unwrap();
+        let profile = site.way(PATH).unwrap().profile();
+        assert_eq!(profile.speed(30.0), 7.0);
+    }
+
     /// Pieces of these lengths (m), with a turn to the left, or to the right, by `degrees` before each but the first.
     fn polygon(lengths: &[f32], degrees: f32) -> Site {
         let (mut at, mut heading) = (Point::origin(), 0.0_f32);
@@ -354,6 +374,20 @@ mod tests {
             40.0,
             &[(7.1, 2.3441), (12.8, 2.3441), (13.0, ANY)],
         );
+    }
+
+    #[test]
+    fn one_looks_as_far_ahead_as_it_takes_to_stop_and_two_windows_back() {
+        let near = |a: f32, b: f32| assert!((a - b).abs() < 1e-4, "{a}, {b}");
+        // 33.33 m at 1.5 m/s², what it goes in twice the time, and a window.
+        near(sight(10.0, 0.5), 33.333_33 + 10.0 + 4.0);
+        near(sight(3.0, 1.5), 3.0 + 9.0 + 4.0);
+        let site = polygon(&[2.0; 30], 1.0);
+        let profile = site.way(PATH).unwrap().profile();
+        let all = |from, to| profile.corners(from, to);
+        // Of points 2 m apart: from 12 m on, and up to before 34 m.
+        assert_eq!([all(20.0, 30.0), all(19.9, 30.1)], [6..17, 6..18]);
+        assert_eq!([all(3.0, 3.0), all(90.0, 99.0)], [1..4, 31..31]);
     }
 
     #[test]

@@ -196,6 +196,8 @@ mod tests {
         let at = |x: f32| Point::new(x, 0.0);
         let error = |points: &[Point]| Route::<3>::new(points.iter().copied()).unwrap_err();
         assert_eq!(error(&[at(0.0), at(0.001)]), RouteError::TooFewPoints);
+        let least = [at(0.0), at(Route::<3>::MIN_SPACING)];
+        assert_eq!(Route::<3>::new(least).unwrap().points(), least);
         assert_eq!(error(&[at(0.0), at(f32::NAN)]), RouteError::OutOfRange);
         let many = [at(0.0), at(1.0), at(2.0), at(3.0)];
         assert_eq!(error(&many), RouteError::TooManyPoints);

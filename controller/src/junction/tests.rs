@@ -119,6 +119,7 @@ fn only_the_first_paths_can_be_entered_and_all_of_them_are_kept() {
     assert!(junction.way(PathId::new(4)).is_none());
     let way = junction.way(east).unwrap();
     assert_eq!((way.ego(), way.paths(), way.tolerance()), (east, 4, 0.25));
+    assert_eq!(junction.tolerance(), 0.25);
     assert!(way.conflict(ramp).is_some() && way.conflict(PathId::new(4)).is_none());
     assert_eq!(way.path(lorry).unwrap().class(), Class::Lorry);
     assert_eq!(way.path(lorry).unwrap().footprint(), LORRY);
@@ -172,10 +173,12 @@ fn a_path_that_begins_in_a_zone_has_its_line_at_its_start() {
 #[test]
 fn what_does_not_fit_is_refused() {
     let full = builder::<1>();
-    let error = full.clone().path(&east(), Class::Car, CAR).unwrap_err();
+    let mut refused = full.clone();
+    let error = refused.path(&east(), Class::Car, CAR).unwrap_err();
     assert_eq!(error, JunctionError::TooManyPaths { capacity: 4 });
     let error = full.clone().variant(ids()[0], Class::Car, CAR).unwrap_err();
     assert_eq!(error, JunctionError::TooManyPaths { capacity: 4 });
+    assert_eq!(refused.build(), full.build(), "nothing is changed");
     let mut small = Junction::<4, 5>::builder();
     small.path(&east(), Class::Car, CAR).unwrap();
     let before = small.clone().build();

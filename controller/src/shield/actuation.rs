@@ -404,6 +404,29 @@ mod tests {
         commands.give(&contract, 0.5, at(200));
         commands.give(&contract, 0.5, at(300));
         assert_eq!(commands.in_effect(&contract), [0.5, 2.0]);
+        // Without a lag, what was in effect before that is over.
+        assert_eq!(commands.since_last(&contract), [0.5, 2.0]);
+    }
+
+    /// Just before the next call: ten commands in flight, the one before them, and the acceleration itself.
+    #[test]
+    fn there_is_room_for_all_that_may_act_and_for_no_more() {
+        let contract = WORST
+            .to_builder()
+            .latency(1.0)
+            .ego_lag(0.2)
+            .build()
+            .unwrap();
+        let mut commands = Commands::unknown();
+        for i in 0..20 {
+            commands.give(&contract, 1.0, Instant::from_millis(100 * i));
+        }
+        let inherited = commands.inherited(&contract, Instant::from_millis(1950));
+        assert_eq!(
+            (inherited.parts.len(), inherited.parts.capacity()),
+            (12, 12)
+        );
+        assert_eq!(commands.flights.capacity(), 11);
     }
 
     #[test]

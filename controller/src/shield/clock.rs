@@ -2,6 +2,7 @@
 
 use super::contract::Contract;
 use crate::instant::{Instant, micros};
+use core::cmp::Ordering;
 
 /// When the shield was called.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -50,11 +51,10 @@ impl Clock {
             });
             return Tick::First;
         };
-        if now == calls.last {
-            return Tick::Repeated;
-        }
-        if now < calls.last {
-            return Tick::Backwards;
+        match now.cmp(&calls.last) {
+            Ordering::Equal => return Tick::Repeated,
+            Ordering::Less => return Tick::Backwards,
+            Ordering::Greater => {}
         }
         // A period of a contract is above 0; the smallest ones round to 1 µs.
         let period = micros(contract.period).max(1);

@@ -60,11 +60,10 @@ impl<const N: usize, R: Rules> Shield<'_, N, R> {
             None => self.carry_on(scene.most),
         };
         Decision {
-            acceleration,
             cause,
             margin: found.map_or(verdict.margin, |(_, verified)| verified.margin),
             plan: self.memory.plan(),
-            ..Decision::none(-contract.ego.braking)
+            ..Decision::none(acceleration)
         }
     }
 

@@ -7,6 +7,7 @@ use crate::headroom::Room;
 use crate::junction::zone::INFLATION;
 use crate::junction::{Class, PathId, Polyline, Route, Way};
 use crate::observation::{Candidate, Track, Vehicle};
+use crate::real::Real;
 
 /// A direction whose cosine to its path is below this points elsewhere: 60°.
 const ALIGNED: f32 = 0.5;
@@ -120,9 +121,7 @@ fn vehicle_on(
     } else {
         keep(heading, Field::Heading, cosine, [ALIGNED, 2.0])?
     };
-    if vehicle.speed < 0.0 {
-        vehicle.speed = 0.0;
-    }
+    vehicle.speed = Real::max(vehicle.speed, 0.0);
     Ok(Admitted {
         vehicle,
         pose: [offset, heading],
@@ -135,10 +134,7 @@ fn aligned(line: Polyline<'_>, vehicle: Vehicle, spare: f32) -> f32 {
     let mut best = cosine(line.pose(vehicle.s));
     if best < ALIGNED {
         for s in [vehicle.s - spare, vehicle.s + spare] {
-            let there = cosine(line.pose(s));
-            if there > best {
-                best = there;
-            }
+            best = Real::max(best, cosine(line.pose(s)));
         }
     }
     best

@@ -184,7 +184,7 @@ fn clear_of<R: Rules>(conflict: &RouteConflict, zone: &Zone, ego: &Own, other: &
         |it: &&Zone| !it.is_lane() && ego.least < it.ego.to && !R::left(it, other.bounds.s.from);
     // As often as there are zones before the last one.
     (1..MAX_ZONES).fold(zone.ego.from, |from, _| {
-        let meets = |it: &&Zone| it.ego.from < from && from <= it.ego.to;
+        let meets = |it: &&Zone| it.ego.contains(from);
         let before = conflict.zones().filter(open).filter(meets);
         before.map(|it| it.ego.from).fold(from, Real::min)
     })
@@ -269,6 +269,76 @@ pub(super) mod tests {
         let beyond: std::vec::Vec<_> = hazards.iter().map(|hazard| hazard.rest_beyond).collect();
         assert_eq!(beyond[..2], [1.0, 2.0]);
         assert_eq!(beyond.last(), Some(&FAR));
+        // They are the largest thing on the stack: there is no room for more.
+        assert_eq!(hazards.sorted.capacity(), usize::from(count));
+    }
+
+    /// Number `number`, passed before another comes.
+    fn passed(number: u16, limit: f32, target: f32) -> Hazard {
+        Hazard {
+            who: Who::Unwatched(number),
+            zone: 0,
+            suspect: false,
+            yields: false,
+            target,
+            limit,
+            rest: limit,
+            rest_beyond: FAR,
+            passage: Passage::Before {
+                distance: 9.0,
+                speed: 5.0,
+            },
+        }
+    }
+
+    #[test]
+    fn of_hazards_with_one_target_the_first_comes_first() {
+        let all = [(1, 20.0), (2, 10.0), (3, 20.0), (4, 10.0)];
+        let hazards = just(&all.map(|(number, target)| passed(number, 5.0, target)));
+        let order: std::vec::Vec<_> = hazards.iter().map(|it| it.who).collect();
+        assert_eq!(order, [2, 4, 1, 3].map(Who::Unwatched));
+    }
+
+    /// Its line is 10 m ahead, and the zone 30 m.
+    #[test]
+    fn one_that_rests_up_to_a_metre_beyond_its_line_waits_there() {
+        let rests = |stop, goes| {
+            let leader = Hazard {
+                passage: Passage::Never,
+                ..passed(2, 28.0, FAR)
+            };
+            let mut hazards = just(&[passed(1, 30.0, 40.0), leader]);
+            hazards.wait_at(10.0, stop, goes);
+            // Whom it follows, it comes up to.
+            assert_eq!(hazards.sorted[1].rest, 28.0);
+            hazards.sorted[0].rest
+        };
+        assert_eq!(
+            [9.0, 10.5, 11.0, 11.1].map(|stop| rests(stop, false)),
+            [10.0, 10.5, 11.0, 30.0]
+        );
+        assert_eq!(
+            [9.0, 10.5, 11.0, 11.1].map(|stop| rests(stop, true)),
+            [10.0, 10.5, 11.0, 10.0]
+        );
+    }
+
+    #[test]
+    fn what_precedence_opens_is_kept_clear_of_those_who_wait_for_nobody_with_a_right() {
+        let rest = |limit: f32, change: fn(&mut Hazard)| {
+            let mut hazard = passed(1, limit, limit + 8.0);
+            change(&mut hazard);
+            let mut hazards = just(&[hazard]);
+            hazards.keep_clear([10.0, 20.0]);
+            hazards.sorted[0].rest
+        };
+        assert_eq!(
+            [9.9, 10.0, 15.0, 19.9, 20.0].map(|limit| rest(limit, |_| {})),
+            [9.9, 10.0, 10.0, 10.0, 20.0]
+        );
+        assert_eq!(rest(15.0, |it| it.rest = 7.0), 7.0);
+        assert_eq!(rest(15.0, |it| it.yields = true), 15.0);
+        assert_eq!(rest(15.0, |it| it.passage = Passage::Never), 15.0);
     }
 
     /// A zone that both enter and leave at these arc lengths.

@@ -377,4 +377,36 @@ mod tests {
         );
         assert_eq!(Hidden::new().tell(way, at(0), &many[1..]), Ok(()));
     }
+
+    #[test]
+    fn as_many_paths_are_out_of_sight_as_there_is_room_for_however_often_they_are_told() {
+        let mut builder = Junction::<10, 20, 1>::builder();
+        let crosses = (0..9_u8).map(|i| 10.0 * f32::from(i) - 40.0);
+        let roads = crosses.map(|x| [(x, -50.0), (x, 50.0)]);
+        for ends in core::iter::once([(-60.0, 0.0), (60.0, 0.0)]).chain(roads) {
+            let route = Route::<2>::new(ends.map(|(x, y)| Point::new(x, y))).unwrap();
+            builder.path(&route, Class::Car, Footprint::PAPER).unwrap();
+        }
+        let site = builder.build().unwrap();
+        let way = site.way(PathId::new(0)).unwrap();
+        let tell = |hidden: &mut Hidden, paths: &[u8]| {
+            let sights = paths
+                .iter()
+                .map(|&path| sight(PathId::new(path), 20.0, 5.0));
+            hidden.tell(way, at(0), &sights.collect::<std::vec::Vec<_>>())
+        };
+        let mut hidden = Hidden::new();
+        assert_eq!(tell(&mut hidden, &[1, 2, 3, 4, 5, 6, 7, 1]), Ok(()));
+        hidden.advance(at(0));
+        hidden.look::<Sound>(&WORST);
+        assert_eq!(hidden.edges.len(), 7);
+        for (paths, told) in [
+            (&[1, 2, 3, 4, 5, 6, 7, 8][..], Ok(())),
+            (&[1, 8], Ok(())),
+            (&[8, 8], Ok(())),
+            (&[8, 9], Err(SightError::TooMany)),
+        ] {
+            assert_eq!(tell(&mut hidden, paths), told, "{paths:?}");
+        }
+    }
 }

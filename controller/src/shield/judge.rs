@@ -79,13 +79,11 @@ impl<const N: usize, R: Rules> Shield<'_, N, R> {
         let mut headroom = Headroom::NONE;
         headroom.note_fault(fault);
         Decision {
-            acceleration,
             cause: Cause::Fallback(if plan.is_some() { fault } else { Fault::NoPlan }),
-            margin: 0.0,
             plan,
             fault: Some(fault),
             headroom,
-            ..Decision::none(-self.contract.ego.braking)
+            ..Decision::none(acceleration)
         }
     }
 

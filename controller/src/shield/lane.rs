@@ -73,7 +73,7 @@ pub(super) fn tells_apart(contract: &Contract, way: Way<'_>) -> Result<(), Enter
         let touching = length(way.ego()) + length(path);
         for zone in conflict.zones().filter(|zone| zone.is_lane()) {
             let band = zone.lead.to - zone.lead.from;
-            let below = 0.25 * if band < touching { band } else { touching };
+            let below = 0.25 * Real::min(touching, band);
             let value = contract.position_error;
             if value >= below {
                 return Err(EnterError::PositionError { path, value, below });

@@ -285,6 +285,14 @@ mod tests {
         reaches(late.least, 0.975 + 1.443_75 + 0.9575, 9.6);
     }
 
+    /// 4/3 m/s² less than what acts: −1 m/s² for 0.54 s, then the command, −0.125 m/s² at least, for a period of 0.08 s.
+    #[test]
+    fn a_fast_ego_gives_way_to_what_nobody_commands_until_it_goes() {
+        let inherited = Inherited::all(&INEXACT, [-1.0, 2.0]);
+        let least = departure(&INEXACT, 12.0, &inherited, 0.5).least;
+        reaches(least, 0.940_267 + 5.000_2 + 0.842_267, 10.523_333);
+    }
+
     #[test]
     fn the_slowest_inexact_ego_gives_way_to_what_nobody_commands() {
         near(fade(&INEXACT), 1.0 / 0.75);
@@ -298,6 +306,10 @@ mod tests {
         let (time, speed) = clearing(&WORST, least(2.0, 10.0), 12.0);
         near(time, 0.883_04 + 0.2);
         near(speed, 160.0_f32.sqrt());
+        // A faster one gives way by 4/3 m/s² for the 1.17 s that it takes at most, after 0.62 s.
+        let (time, speed) = clearing(&INEXACT, least(2.0, 12.0), 12.0);
+        near(time, 10.0 / 10.440_85 + 0.62);
+        near(speed, 10.440_85);
         // As fast as its limiter lets it be, after 0.62 s; from below 0 after 2 s at rest.
         let (time, speed) = clearing(&INEXACT, least(2.0, 9.0), 12.0);
         near(time, 10.0 / 8.551_667 + 0.62);

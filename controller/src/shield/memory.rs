@@ -8,9 +8,10 @@ use super::own::Own;
 use super::reach::Reach;
 use crate::headroom::Room;
 use crate::instant::{Instant, micros};
-use crate::junction::zone::{FAR, Span};
+use crate::junction::zone::Span;
 use crate::observation::Vehicle;
 use crate::plan::Plan;
+use crate::real::Real;
 
 /// What is left of the plan that was verified last.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +42,7 @@ impl Memory {
             remembered: None,
             commands: Commands::unknown(),
             last: None,
-            least: -FAR,
+            least: f32::NEG_INFINITY,
             blind: 0,
         }
     }
@@ -125,7 +126,12 @@ impl Memory {
         let common = expected.map(|expected| both(contract, expected, seen));
         let possible = common.filter(|&(_, rooms)| Room::hold(rooms));
         let unknown = common.is_none() || possible.is_some();
-        let own = Own::new(contract, ego, if unknown { self.least } else { -FAR });
+        let least = if unknown {
+            self.least
+        } else {
+            f32::NEG_INFINITY
+        };
+        let own = Own::new(contract, ego, least);
         self.last = Some((possible.map_or(seen, |(bounds, _)| bounds), now));
         self.least = own.least;
         self.blind = 0;
@@ -173,14 +179,12 @@ impl Memory {
 /// What is in both, and what is left of place and speed until that is empty by more than rounding.
 fn both(contract: &Contract, expected: Bounds, seen: Bounds) -> (Bounds, [Room; 2]) {
     let common = |a: Span, b: Span| {
-        let from = if a.from > b.from { a.from } else { b.from };
-        let to = if a.to < b.to { a.to } else { b.to };
+        let (from, to) = (Real::max(b.from, a.from), Real::min(b.to, a.to));
         let rounded = Span {
-            from: if from < to { from } else { to },
-            to: if from < to { to } else { from },
+            from: Real::min(to, from),
+            to: Real::max(from, to),
         };
-        let (a, b) = (a.to - a.from, b.to - b.from);
-        let most = if a < b { a } else { b } + contract.slack;
+        let most = Real::min(b.to - b.from, a.to - a.from) + contract.slack;
         (rounded, Room::of(to + contract.slack - from, most))
     };
     let (s, place) = common(expected.s, seen.s);
@@ -191,6 +195,7 @@ fn both(contract: &Contract, expected: Bounds, seen: Bounds) -> (Bounds, [Room; 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shield::contract::tests::INEXACT;
 
     fn bounds(s: [f32; 2], speed: [f32; 2]) -> Bounds {
         let span = |[from, to]: [f32; 2]| Span { from, to };
@@ -255,6 +260,28 @@ mod tests {
         assert_eq!(memory.plan(), None);
     }
 
+    /// The ego, 10 m along its path.
+    fn ego(speed: f32) -> Vehicle {
+        Vehicle {
+            s: 10.0,
+            speed,
+            pose: crate::geometry::Pose {
+                position: crate::geometry::Point::origin(),
+                direction: crate::geometry::unit(1.0, 0.0),
+            },
+        }
+    }
+
+    #[track_caller]
+    fn close(a: Bounds, b: Bounds) {
+        let near = |a: f32, b: f32| (a - b).abs() < 1e-4;
+        let spans = [(a.s, b.s), (a.speed, b.speed)];
+        let same = spans
+            .iter()
+            .all(|(a, b)| near(a.from, b.from) && near(a.to, b.to));
+        assert!(same, "{a:?}, {b:?}");
+    }
+
     /// By what was commanded; by anything, if a call was missed.
     #[test]
     fn the_ego_is_expected_where_its_commands_lead() {
@@ -265,29 +292,13 @@ mod tests {
             .unwrap();
         let at = Instant::from_millis;
         let mut memory = Memory::new();
-        let ego = Vehicle {
-            s: 10.0,
-            speed: 8.0,
-            pose: crate::geometry::Pose {
-                position: crate::geometry::Point::origin(),
-                direction: crate::geometry::unit(1.0, 0.0),
-            },
-        };
         assert_eq!(memory.least_speed(&contract, at(0)), 0.0);
         for millis in [0, 100, 200, 300] {
             memory.call(&contract, at(millis));
             memory.command(&contract, 1.0, at(millis));
         }
-        memory.note(&contract, &ego, at(300));
+        memory.note(&contract, &ego(8.0), at(300));
         memory.call(&contract, at(400));
-        let close = |a: Bounds, b: Bounds| {
-            let near = |a: f32, b: f32| (a - b).abs() < 1e-4;
-            let spans = [(a.s, b.s), (a.speed, b.speed)];
-            let same = spans
-                .iter()
-                .all(|(a, b)| near(a.from, b.from) && near(a.to, b.to));
-            assert!(same, "{a:?}, {b:?}");
-        };
         let expected = memory.expected(&contract, at(400)).unwrap();
         close(expected, bounds([9.5 + 0.785, 10.5 + 0.825], [7.9, 8.3]));
         assert!((memory.least_speed(&contract, at(400)) - 7.9).abs() < 1e-4);
@@ -296,5 +307,35 @@ mod tests {
         close(expected, bounds([9.5 + 1.5, 10.5 + 1.7], [7.2, 8.8]));
         memory.forget_ego();
         assert_eq!(memory.expected(&contract, at(500)), None);
+    }
+
+    /// Faster than it certainly goes, an inexact ego may slow down when it goes: by 4/3 m/s² at most, beside 8 m/s² of brakes.
+    #[test]
+    fn a_fast_ego_is_expected_to_give_way_to_what_nobody_commands() {
+        let mut memory = Memory::new();
+        let at = Instant::from_millis;
+        memory.note(&INEXACT, &ego(12.0), at(0));
+        let expected = memory.expected(&INEXACT, at(100)).unwrap();
+        close(
+            expected,
+            bounds([9.8 + 1.136_67, 10.2 + 1.225], [10.966_67, 12.4]),
+        );
+    }
+
+    #[test]
+    fn what_the_ego_has_passed_it_has_passed_unless_it_is_not_where_its_commands_lead() {
+        let contract = Contract::builder().position_error(0.5).build().unwrap();
+        let least = |then: Vehicle| {
+            let mut memory = Memory::new();
+            let at = Instant::from_millis;
+            let (first, none) = memory.note(&contract, &ego(0.0), at(0));
+            assert_eq!((first.least, none), (9.5, None));
+            let (own, rooms) = memory.note(&contract, &then, at(100));
+            (own.least, Room::hold(rooms.unwrap()))
+        };
+        let at = |s, speed| Vehicle { s, ..ego(speed) };
+        assert_eq!(least(at(9.75, 0.0)), (9.5, true));
+        assert_eq!(least(at(9.75, 5.0)), (9.25, false));
+        assert_eq!(least(at(30.0, 0.0)), (29.5, false));
     }
 }

@@ -50,7 +50,6 @@ use crate::decision::Decision;
 use crate::fault::Fault;
 use crate::headroom::Room;
 use crate::instant::Instant;
-use crate::junction::zone::FAR;
 use crate::junction::{Junction, MAX_OTHERS, PathId, Way};
 use crate::observation::{Observation, Sight};
 use actuation::Inherited;
@@ -312,7 +311,7 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         }
         let contract = &self.contract;
         let ego = door::ego(self.way, contract, &observation.ego)?;
-        let ego = Own::new(contract, &ego.vehicle, -FAR);
+        let ego = Own::new(contract, &ego.vehicle, f32::NEG_INFINITY);
         let mut tracks = Tracks::<N>::new();
         let now = Instant::default();
         let findings = tracks.note::<R>(contract, self.way, now, &ego, observation);
@@ -334,7 +333,6 @@ impl<'j, const N: usize, R: Rules> Shield<'j, N, R> {
         Self {
             tracks: self.tracks.clone(),
             memory: self.memory.clone(),
-            rules: PhantomData,
             ..*self
         }
     }

@@ -12,6 +12,7 @@ use crate::instant::Instant;
 use crate::junction::zone::{FAR, Span, Zone};
 use crate::junction::{PathId, Way};
 use crate::observation::Vehicle;
+use crate::real::Real;
 
 /// A tracked vehicle on one of its candidate paths, which has a zone ahead with the ego's.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,8 +105,8 @@ impl Other {
     /// was there.
     pub(super) fn emerge(&mut self, source: Bounds, holds: bool) {
         let lower = |span: &mut Span, most: f32| {
-            if span.from <= most && most < span.to {
-                span.to = most;
+            if span.from <= most {
+                span.to = Real::min(span.to, most);
             }
         };
         lower(&mut self.bounds.s, source.s.to);
@@ -167,8 +168,8 @@ impl Other {
         self.seen = true;
         if possible {
             // It never moves backwards, whatever the sensors say: what it has left, it has left for ever.
-            if least > seen.s.from && least <= seen.s.to {
-                self.bounds.s.from = least;
+            if least <= seen.s.to {
+                self.bounds.s.from = Real::max(seen.s.from, least);
             }
         } else if self.gone {
             // Another one, by the number of one that has left.

@@ -152,9 +152,12 @@ impl PairMemory {
         let slow = contract.rest_speed() + 2.0 * contract.speed_error + 0.5 * dip(contract);
         let crept = f32::from(periods) * contract.period * slow + contract.position_error;
         let inside = |zone: &Zone| s - crept > zone.ego.from && s < zone.ego.to;
-        let held = (0_u32..).zip(zones).fold(0, |held, (number, zone)| {
-            held | ZoneSet::from(inside(zone) && !zone.is_lane()) << number
-        });
+        let mut held = 0;
+        for (number, zone) in (0_u8..).zip(zones) {
+            if inside(zone) && !zone.is_lane() {
+                held |= 1 << number;
+            }
+        }
         if held != 0 {
             self.turn = Turn::Inside(held);
         }

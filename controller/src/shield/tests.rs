@@ -6,7 +6,7 @@ use super::*;
 use crate::decision::{Breach, Cause};
 use crate::geometry::{Footprint, Point, Pose, unit};
 use crate::headroom::Headroom;
-use crate::junction::zone::Span;
+use crate::junction::zone::{FAR, Span};
 use crate::junction::{Class, RightOfWay, Route, Zone};
 use crate::observation::{Track, Vehicle};
 use proptest::prelude::*;

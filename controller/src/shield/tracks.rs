@@ -15,6 +15,7 @@ use crate::instant::Instant;
 use crate::junction::zone::{FAR, MAX_ZONES};
 use crate::junction::{Class, PathId, Way};
 use crate::observation::{Candidate, Observation, Track};
+use crate::real::Real;
 use heapless::Vec;
 
 /// The others that matter, at most `N`.
@@ -96,9 +97,7 @@ impl<const N: usize> Tracks<N> {
             other.seen = false;
             let least = other.bounds.s.from;
             other.bounds = other.coasting::<R>(contract, now);
-            if least > other.bounds.s.from {
-                other.bounds.s.from = least;
-            }
+            other.bounds.s.from = Real::max(other.bounds.s.from, least);
         }
     }
 

@@ -218,6 +218,8 @@ pub(super) fn unplaced(way: Way<'_>, path: PathId, class: Class, ego: f32) -> Op
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::{Footprint, Point};
+    use crate::junction::{Junction, Route};
 
     const PATH: PathId = PathId::new(1);
 
@@ -299,5 +301,85 @@ mod tests {
         assert!(unwatched.placed(20, PATH).is_none() && unwatched.placed(22, PATH).is_some());
         unwatched.begin();
         assert_eq!(unwatched.beyond(), None);
+    }
+
+    /// The ego's road, one that crosses it, and one that does so farther on.
+    fn site() -> Junction<3, 6, 1> {
+        let mut builder = Junction::builder();
+        for ends in [
+            [(-50.0, 0.0), (50.0, 0.0)],
+            [(0.0, -50.0), (0.0, 50.0)],
+            [(20.0, -50.0), (20.0, 50.0)],
+        ] {
+            let route = Route::<2>::new(ends.map(|(x, y)| Point::new(x, y))).unwrap();
+            builder.path(&route, Class::Car, Footprint::PAPER).unwrap();
+        }
+        builder.build().unwrap()
+    }
+
+    /// Where the ego is in the zone of path `path`: from, to.
+    fn zone(way: Way<'_>, path: u8) -> [f32; 2] {
+        let conflict = way.conflict(PathId::new(path)).unwrap();
+        let Zone { ego, .. } = *conflict.zones().next().unwrap();
+        [ego.from, ego.to]
+    }
+
+    #[test]
+    fn a_path_is_closed_where_it_is_met_next_and_an_unknown_one_where_anybody_is() {
+        let site = site();
+        let way = site.way(PathId::new(0)).unwrap();
+        let ([near, past], [far, _]) = (zone(way, 1), zone(way, 2));
+        let first = |ego| first_zone(way.conflict(PATH).unwrap(), ego);
+        assert_eq!(
+            [0.0, near, past - 0.1, past].map(first),
+            [Some(near), Some(near), Some(near), None]
+        );
+        let closed = |path, class, ego| unplaced(way, PathId::new(path), class, ego);
+        assert_eq!(closed(2, Class::Car, 0.0), Some(far));
+        assert_eq!(closed(1, Class::Car, past), None);
+        // It may be on the ego's own road.
+        for (path, class) in [(2, Class::Lorry), (7, Class::Car)] {
+            assert_eq!(closed(path, class, past), Some(-FAR));
+        }
+    }
+
+    #[test]
+    fn who_is_missing_is_on_its_path_until_the_ego_has_passed_it() {
+        let site = site();
+        let way = site.way(PathId::new(0)).unwrap();
+        let [near, past] = zone(way, 1);
+        let mut unwatched = Unwatched::new();
+        let froms = |unwatched: &mut Unwatched| {
+            [1, 3].map(|number| unwatched.placed(number, PATH).map(|it| it.from))
+        };
+        let closed = |number, from| Some(Closed { number, from });
+        unwatched.close(1, PATH, Place::OnFoot, 5.0);
+        unwatched.close(2, PATH, Place::Unknown, 4.0);
+        unwatched.close(3, PATH, Place::OnFoot, FAR);
+        assert_eq!(unwatched.end(way, 0.0), closed(2, 4.0));
+        assert_eq!(froms(&mut unwatched), [Some(5.0), Some(FAR)]);
+        // One of unknown place was perhaps never there, and one that has left is gone for ever.
+        unwatched.begin();
+        assert_eq!(unwatched.end(way, 0.0), closed(1, near));
+        assert_eq!(froms(&mut unwatched), [Some(near), Some(FAR)]);
+        assert_eq!(unwatched.entries.len(), 2);
+        unwatched.begin();
+        unwatched.close(3, PATH, Place::OnFoot, FAR);
+        assert_eq!(unwatched.end(way, past), None);
+        assert_eq!(froms(&mut unwatched), [None, Some(FAR)]);
+        unwatched.close(1, PATH, Place::OnFoot, 7.0);
+        assert_eq!(unwatched.end(way, past), closed(1, 7.0));
+    }
+
+    #[test]
+    fn who_has_left_is_not_known_any_more_and_takes_nobodys_room() {
+        let mut unwatched = Unwatched::new();
+        unwatched.close(0, PATH, Place::OnFoot, FAR);
+        for number in 1..16 {
+            unwatched.close(number, PATH, Place::OnFoot, 50.0);
+        }
+        unwatched.close(16, PATH, Place::OnFoot, FAR);
+        assert!(unwatched.placed(0, PATH).is_some() && unwatched.placed(16, PATH).is_none());
+        assert!(unwatched.knows(1) && !unwatched.knows(0) && !unwatched.knows(16));
     }
 }

@@ -182,6 +182,22 @@ mod tests {
         let neither = best_of(&[hazard(20.0, 5.0, FREE), hazard(FAR, 50.0, Passage::Never)]);
         assert_eq!(neither.plan.go, 0);
         near(neither.margin, -2.01);
+        // Of two that are as good, the shorter one.
+        let both = best_of(&[
+            hazard(20.0, 5.0, FREE),
+            hazard(
+                30.0,
+                500.0,
+                Passage::Before {
+                    distance: 1000.0,
+                    speed: 5.0,
+                },
+            ),
+        ]);
+        assert_eq!(
+            (both.plan.go, both.passes, both.margin),
+            (23, 20.0, passes.margin)
+        );
         // Not within a minute.
         assert_eq!(best_of(&[hazard(1000.0, 5.0, FREE)]).plan.go, 0);
         assert_eq!(best_of(&[]).plan.go, 0);

@@ -345,6 +345,11 @@ mod tests {
                 least: 79.7,
             };
             assert_eq!(walkers.hazards(&contract, way, &past).count(), 0);
+            let count = |least: f32| {
+                let own = Own { least, ..own };
+                walkers.hazards(&contract, way, &own).count()
+            };
+            assert_eq!([zone.ego.to - 0.1, zone.ego.to].map(count), [1, 0]);
         }
     }
 }

@@ -9,6 +9,7 @@
 use super::INFLATION;
 use crate::geometry::{Footprint, Point, Vector, length};
 use crate::junction::polyline::{Piece, Polyline};
+use crate::real::Real;
 
 /// A change of direction that moves corners by less than this (m) inflates the pieces beside it, and no
 /// turn is looked at for it.
@@ -82,7 +83,7 @@ impl<'a> Body<'a> {
 
     /// No part of the inflated footprint is farther (m) than this from the polyline.
     pub(super) fn reach(&self) -> f32 {
-        let sweep = larger(0.5 * STEP * self.radius, SMALL_SWEEP);
+        let sweep = Real::max(SMALL_SWEEP, 0.5 * STEP * self.radius);
         // Sides that are moved out by x move a corner by √2 x; rounding is allowed for.
         1.001 * self.radius + 1.5 * (self.inflation + sweep)
     }
@@ -119,9 +120,9 @@ impl<'a> Body<'a> {
             turning: false,
             first: i == 0,
             last: i + 1 == self.polyline.pieces(),
-            half: self.half(larger(sweeps.0, sweeps.1)),
+            half: self.half(Real::max(sweeps.0, sweeps.1)),
         };
-        let window = smaller(TURNING * self.footprint.length, straight.length);
+        let window = Real::min(straight.length, TURNING * self.footprint.length);
         let starts = before.and_then(|bend| self.arc(&bend, [bend.middle, along]));
         let ends = after.and_then(|bend| self.arc(&bend, [along, bend.middle]));
         Some(Stage::new(straight, window, [starts, ends]))
@@ -190,10 +191,10 @@ impl Stage {
             // Corners are nearer than the sum of both halves; rounding is allowed for.
             let more = 1.01 * away * (arc.half.0 + arc.half.1);
             half = (
-                larger(half.0, arc.half.0 + more),
-                larger(half.1, arc.half.1 + more),
+                Real::max(half.0, arc.half.0 + more),
+                Real::max(half.1, arc.half.1 + more),
             );
-            askew = larger(askew, away);
+            askew = Real::max(askew, away);
         }
         Self {
             straight,
@@ -282,14 +283,6 @@ impl Arc {
             point * (1.0 / length(&point))
         })
     }
-}
-
-const fn larger(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
-}
-
-const fn smaller(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
 }
 
 /// The direction of a piece, of length 1 also where arc lengths are rounded.
@@ -534,6 +527,21 @@ mod tests {
             let (at, angle) = kink(degrees).unwrap();
             assert_eq!(at, 1);
             assert!((angle - 100.0).abs() < 0.01);
+        }
+    }
+
+    /// By 1.5° on either side, at once: 0.75° from the middle.
+    #[test]
+    fn a_bend_of_less_than_a_step_is_one_turn() {
+        let route = corner(3.0);
+        let body = Body::new(route.polyline(), CAR, 0.0);
+        for (i, heading) in [(0, 0.75), (1, 2.25)] {
+            let turns: std::vec::Vec<Motion> = body.stage(i).unwrap().turns().collect();
+            assert_eq!(turns.len(), 1);
+            let direction = turns[0].direction;
+            assert!((direction.y.atan2(direction.x).to_degrees() - heading).abs() < 1e-2);
+            near(turns[0].half.0, 2.02 + 2.5 * 0.75_f32.to_radians());
+            near(turns[0].half.1, 1.52 + 2.5 * 0.75_f32.to_radians());
         }
     }
 }

@@ -5,6 +5,7 @@ use super::cell::{opposite, parallel};
 use super::patch::Patch;
 use super::{FAR, INFLATION, Span, TOUCHING};
 use crate::geometry::{Point, Vector};
+use crate::real::Real;
 use heapless::Vec;
 
 /// A polygon in the (s, t) plane, both counted from the motions' starts.
@@ -18,11 +19,10 @@ pub(super) fn meet(a: &Motion, b: &Motion) -> Option<Patch> {
     let mut polygon = rectangle(a.length, b.length);
     for limit in &limits {
         let range = limit.range(a.length, b.length);
-        if range.to > limit.radius {
-            cut(&mut polygon, limit, 1.0);
-        }
-        if range.from < -limit.radius {
-            cut(&mut polygon, limit, -1.0);
+        for (side, most) in [(1.0, range.to), (-1.0, -range.from)] {
+            if most > limit.radius {
+                cut(&mut polygon, limit, side);
+            }
         }
     }
     bounds(a, b, &polygon)
@@ -31,8 +31,7 @@ pub(super) fn meet(a: &Motion, b: &Motion) -> Option<Patch> {
 /// Along which axes the rectangles have to overlap; none, if along one of them they never do.
 pub(super) fn limits(a: &Motion, b: &Motion) -> Option<[Limit; 4]> {
     let between = a.start - b.start;
-    let reach = a.length + b.length + a.half.0 + a.half.1 + b.half.0 + b.half.1;
-    if between.dot(&between) > reach * reach {
+    if far_apart(a, b, between) {
         return None;
     }
     let mut limits = [Limit::default(); 4];
@@ -44,11 +43,17 @@ pub(super) fn limits(a: &Motion, b: &Motion) -> Option<[Limit; 4]> {
             other_along: -axis.dot(&b.velocity),
         };
         let range = limit.range(a.length, b.length);
-        if range.from > radius || range.to < -radius {
+        if limit.excludes(range) {
             return None;
         }
     }
     Some(limits)
+}
+
+/// Whether nothing of the two can touch, `between` their starts.
+fn far_apart(a: &Motion, b: &Motion, between: Vector) -> bool {
+    let reach = a.length + b.length + a.half.0 + a.half.1 + b.half.0 + b.half.1;
+    between.dot(&between) > reach * reach
 }
 
 /// The rectangles overlap along one axis while |offset + along s + other_along t| ≤ radius.
@@ -65,10 +70,15 @@ impl Limit {
         self.offset + self.along * p.x + self.other_along * p.y
     }
 
+    /// Whether the rectangles are apart wherever its value is in `range`.
+    fn excludes(&self, range: Span) -> bool {
+        range.from > self.radius || range.to < -self.radius
+    }
+
     /// Its values over the rectangle from (0, 0) to (`width`, `height`).
     fn range(&self, width: f32, height: f32) -> Span {
         let (x, y) = (self.along * width, self.other_along * height);
-        let below = |v: f32| if v < 0.0 { v } else { 0.0 };
+        let below = |v: f32| Real::min(0.0, v);
         Span {
             from: self.offset + below(x) + below(y),
             to: self.offset - below(-x) - below(-y),
@@ -210,6 +220,30 @@ mod tests {
     fn is(span: Span, from: f32, to: f32) {
         let near = (span.from - from).abs() < 1e-3 && (span.to - to).abs() < 1e-3;
         assert!(near, "{span:?}, not {from} to {to}");
+    }
+
+    #[test]
+    fn motions_are_far_apart_beyond_all_their_lengths() {
+        let a = Motion {
+            half: (3.0, 1.5),
+            ..motion((0.0, 0.0), 0.0, 6.0)
+        };
+        let b = motion((0.0, 0.0), 0.0, 9.0);
+        let apart = |x: f32, y: f32| far_apart(&a, &b, Vector::new(x, y));
+        // 6 + 9 + 3 + 1.5 + 2.5 + 1 m.
+        assert!(!apart(22.9, 0.0) && !apart(0.0, -22.9) && !apart(-23.0, 0.0));
+        assert!(apart(-23.1, 0.0) && apart(0.0, 23.1) && apart(17.0, 17.0));
+    }
+
+    #[test]
+    fn a_limit_excludes_what_is_beyond_its_radius_on_either_side() {
+        let limit = Limit {
+            radius: 3.0,
+            ..Limit::default()
+        };
+        let excludes = |from, to| limit.excludes(Span { from, to });
+        assert!(excludes(3.1, 9.0) && excludes(-9.0, -3.1));
+        assert!(!excludes(3.0, 9.0) && !excludes(-9.0, -3.0) && !excludes(-9.0, 9.0));
     }
 
     #[test]

@@ -78,3 +78,86 @@ fn joined(patches: &mut [Option<Patch>], patch: Patch) -> Patch {
     whole.mixed = true;
     whole
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::junction::zone::Span;
+
+    fn span(from: f32, to: f32) -> Span {
+        Span { from, to }
+    }
+
+    /// Occupied from `from` to `to`, by the ego and by the other.
+    fn square(from: f32, to: f32) -> Patch {
+        Patch {
+            ego: span(from, to),
+            other: span(from, to),
+            lead: span(-9.0, 9.0),
+            parallel: None,
+            starts: false,
+            ends: false,
+            mixed: false,
+        }
+    }
+
+    #[test]
+    fn a_cell_is_covered_by_the_only_patch_that_it_touches() {
+        let cell = |from, to, opposite| Cell {
+            ego: span(from, to),
+            other: span(from, to),
+            lead: span(-1.0, 1.0),
+            parallel: false,
+            opposite,
+            end: false,
+        };
+        let one = [Some(square(0.0, 10.0)), None, None];
+        assert!(covered(&one, &cell(2.0, 8.0, false)));
+        assert!(
+            !covered(&one, &cell(2.0, 12.0, false)) && !covered(&one, &cell(20.0, 22.0, false))
+        );
+        assert!(!covered(&one, &cell(2.0, 8.0, true)), "they meet head-on");
+        // Another one that it does not touch, or only in one of the two.
+        let beside = Patch {
+            ego: span(20.0, 30.0),
+            ..square(0.0, 10.0)
+        };
+        for other in [square(20.0, 30.0), beside] {
+            let two = [Some(square(0.0, 10.0)), Some(other), None];
+            assert!(covered(&two, &cell(2.0, 8.0, false)));
+        }
+        let two = [Some(square(0.0, 10.0)), Some(square(7.0, 17.0)), None];
+        assert!(
+            !covered(&two, &cell(2.0, 8.0, false)),
+            "both hang together in it"
+        );
+    }
+
+    /// What is occupied after a fourth patch is inserted.
+    fn with_a_fourth(patches: [Patch; MAX_ZONES], patch: Patch) -> std::vec::Vec<(f32, f32, bool)> {
+        let mut patches = patches.map(Some);
+        insert(&mut patches, patch);
+        let mut all: std::vec::Vec<_> = (patches.iter().flatten())
+            .map(|it| (it.ego.from, it.ego.to, it.mixed))
+            .collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        all
+    }
+
+    #[test]
+    fn without_room_the_two_become_one_that_grow_least_and_of_equals_the_first() {
+        let [a, b, c] = [square(0.0, 4.0), square(20.0, 24.0), square(40.0, 44.0)];
+        assert_eq!(
+            with_a_fourth([a, b, c], square(50.0, 54.0)),
+            [(0.0, 4.0, false), (20.0, 24.0, false), (40.0, 54.0, true)]
+        );
+        assert_eq!(
+            with_a_fourth([a, square(10.0, 14.0), c], square(90.0, 94.0)),
+            [(0.0, 14.0, true), (40.0, 44.0, false), (90.0, 94.0, false)]
+        );
+        assert_eq!(
+            with_a_fourth([a, b, c], square(90.0, 94.0)),
+            [(0.0, 24.0, true), (40.0, 44.0, false), (90.0, 94.0, false)]
+        );
+    }
+}

@@ -22,6 +22,7 @@ mod near;
 mod patch;
 
 use crate::junction::kind::ConflictKind;
+use crate::real::Real;
 pub(crate) use body::{Body, sharp_kink};
 use body::{Motion, Stage};
 use cell::Cell;
@@ -67,8 +68,8 @@ impl Span {
 
     fn including(self, value: f32) -> Self {
         Self {
-            from: if value < self.from { value } else { self.from },
-            to: if value > self.to { value } else { self.to },
+            from: Real::min(self.from, value),
+            to: Real::max(self.to, value),
         }
     }
 
@@ -156,16 +157,7 @@ pub(crate) fn zone_with_itself(body: &Body<'_>) -> Option<Zone> {
     });
     let apart = body.footprint().length + INFLATION;
     let widest = patches.iter().flatten().fold(apart, |widest, patch| {
-        let widest = if patch.lead.to > widest {
-            patch.lead.to
-        } else {
-            widest
-        };
-        if -patch.lead.from > widest {
-            -patch.lead.from
-        } else {
-            widest
-        }
+        Real::max(Real::max(widest, patch.lead.to), -patch.lead.from)
     });
     if widest > WIDEST * apart || patches.iter().flatten().any(|patch| patch.mixed) {
         return None;

@@ -216,4 +216,22 @@ mod tests {
             "{met:?}"
         );
     }
+
+    #[test]
+    fn small_footprints_are_met_as_far_as_both_reach() {
+        let walks = Footprint {
+            length: 0.6,
+            width: 0.6,
+        };
+        let met = |beside: f32| {
+            let lines = [0.0, beside]
+                .map(|y| Route::<2>::new([0.0, 5.0].map(|x| Point::new(x, y))).unwrap());
+            let [a, b] = [0, 1].map(|i| Body::new(lines[i].polyline(), walks, 0.0));
+            let mut count = 0;
+            near_pieces(&a, &b, &mut |_, _| count += 1);
+            count
+        };
+        // Each as far as 0.4997 m.
+        assert_eq!([0.99, 1.01].map(met), [1, 0]);
+    }
 }

@@ -5,6 +5,7 @@ use super::{FAR, Span, WIDEST, Zone};
 use crate::geometry::Footprint;
 use crate::junction::MAX_PATH_LENGTH;
 use crate::junction::kind::ConflictKind;
+use crate::real::Real;
 
 /// Vehicles share a way if they point the same way over this share of their lengths, and more than where they cross.
 const ALONG: f32 = 0.4;
@@ -110,12 +111,7 @@ impl Patch {
 
 /// The length of an interval; one that goes on past an end of a route is as long as a route may be.
 fn extent(interval: Span) -> f32 {
-    let length = interval.to - interval.from;
-    if length > MAX_PATH_LENGTH {
-        MAX_PATH_LENGTH
-    } else {
-        length
-    }
+    Real::min(interval.to - interval.from, MAX_PATH_LENGTH)
 }
 
 /// A band at least `width` wide, on whichever side it is cut off. A lane that a route's end cuts off goes on beyond it.

@@ -299,3 +299,75 @@ fn who_stands_in_a_crossing_holds_it() {
     assert_eq!(held(62.0, [5, 5]), 0);
     assert_eq!([held(56.0, [4, 5]), held(56.0, [5, 4])], [0, 0]);
 }
+
+/// A tie is up to six periods, one more than the rule says.
+#[test]
+fn who_came_first_has_precedence_and_in_a_tie_whoever_has_the_right_of_way() {
+    let contract = contract(0, 5);
+    let goes = |of_way, mine: [u64; 2], theirs: [u64; 2]| {
+        let [mine, theirs] = [mine, theirs].map(|[after, by]| arrival(Some(after), Some(by)));
+        let (mut pair, mut ego) = (PairMemory::default(), Presence::default());
+        pair.turn = Turn::First;
+        (ego.arrival, pair.other.arrival) = (mine, theirs);
+        let right = Right {
+            of_way,
+            priority: Priority::FirstCome,
+            in_turns: RightOfWay::Unsettled,
+        };
+        pair.claims(&contract, contract.precedence.unwrap(), right, &ego) == ALL
+    };
+    use RightOfWay::{Ego, Other, Unsettled};
+    for right in [Other, Unsettled] {
+        assert!(goes(right, [900, 1000], [1600, 1700]));
+        assert!(!goes(right, [900, 1000], [1599, 1700]));
+    }
+    assert!(goes(Ego, [1500, 1600], [1000, 1100]));
+    assert!(!goes(Ego, [1500, 1601], [1000, 1100]));
+}
+
+/// Whether the ego, which comes second, gets the turn that begins after it has surely rested for so many periods, if the
+/// two have perhaps rested for these.
+fn gets_its_turn(in_turns: RightOfWay, surely: u16, perhaps: [u16; 2]) -> bool {
+    let contract = contract(8, 5);
+    let (mut pair, mut ego) = (PairMemory::default(), Presence::default());
+    pair.turn = Turn::First;
+    let [mine, theirs] = perhaps;
+    (ego.arrival, pair.other.arrival) = (
+        arrival(Some(80_000_000), Some(80_000_100)),
+        arrival(Some(1000), Some(1100)),
+    );
+    for (standstill, perhaps) in [
+        (&mut ego.standstill, mine),
+        (&mut pair.other.standstill, theirs),
+    ] {
+        (standstill.perhaps, standstill.surely) = (perhaps, surely);
+    }
+    let right = Right {
+        of_way: RightOfWay::Other,
+        priority: Priority::FirstCome,
+        in_turns,
+    };
+    pair.pass::<Sound>(&contract, contract.precedence.unwrap(), right, &ego);
+    pair.turn == Turn::Ego
+}
+
+#[test]
+fn turns_are_counted_from_a_rest_that_is_known() {
+    use RightOfWay::{Other, Unsettled};
+    const NEVER: u16 = u16::MAX;
+    // A patience of eight periods, and a grace of four.
+    for in_turns in [Other, Unsettled] {
+        assert!(gets_its_turn(in_turns, 12, [12, 12]));
+        assert!(!gets_its_turn(in_turns, 11, [12, 12]) && !gets_its_turn(in_turns, 13, [13, 13]));
+        // Of either, if there is an order; without one, of both.
+        for perhaps in [[12, NEVER], [NEVER, 12]] {
+            assert_eq!(
+                gets_its_turn(in_turns, 12, perhaps),
+                in_turns == Other,
+                "{perhaps:?}"
+            );
+        }
+        // 65535 periods are in the turn that begins after 32768.
+        assert!(!gets_its_turn(in_turns, 32_772, [NEVER; 2]));
+    }
+}

@@ -234,6 +234,87 @@ fn one_that_comes_out_of_sight_is_no_farther_and_no_faster_than_who_was_expected
     }
 }
 
+/// One that was at 10 m with 5 m/s, to within errors, and is seen at `s` with `speed` at the same time.
+fn met(s: f32, speed: f32, gone: bool) -> (other::Other, findings::Findings) {
+    let site = crossing();
+    let contract = errs(WORST);
+    let mut other = known(&site, &contract, [10.0, 5.0]);
+    (other.counted, other.settled, other.fresh, other.gone) = (0b1, 0b1, false, gone);
+    let (seen, mut findings) = (on(&site, PathId::new(1), [s, speed]), Default::default());
+    other.meet(&contract, &seen, Instant::from_millis(0), &mut findings);
+    (other, findings)
+}
+
+#[test]
+fn one_that_is_seen_again_is_where_it_can_be_or_broke_the_contract_or_is_another() {
+    for gone in [false, true] {
+        let (other, findings) = met(9.8, 5.0, gone);
+        assert_eq!((other.news, findings.breach), (other::News::None, None));
+        assert!(findings.headroom.other_position.is_some());
+        assert_eq!((other.counted, other.settled, other.gone), (0b1, 0b1, gone));
+        // It never moves backwards.
+        near(other.bounds.s.from, 9.7);
+        near(other.bounds.s.to, 10.1);
+        near(other.base.s.from, 9.5);
+    }
+    for (s, speed) in [(20.0, 5.0), (10.0, 9.0), (9.0, 5.0)] {
+        let (other, findings) = met(s, speed, false);
+        assert_eq!((other.news, findings.breach), (other::News::Broke, Some(1)));
+        assert_eq!((other.counted, other.settled), (0, 0));
+        near(other.bounds.s.from, s - 0.3);
+        let (other, findings) = met(s, speed, true);
+        assert_eq!((other.news, findings.breach), (other::News::Appeared, None));
+        assert!(!other.gone && !other.fresh);
+    }
+}
+
+#[test]
+fn one_that_is_watched_again_is_where_it_can_be_or_broke_the_contract_or_is_another() {
+    let site = crossing();
+    let contract = errs(WORST);
+    let follows = |s: f32, from: f32, holds: bool| {
+        let first = known(&site, &contract, [10.0, 5.0]);
+        let place = unwatched::Place::Known {
+            base: first.bounds,
+            at: first.at,
+            settled: 0b10,
+        };
+        let mut entry = unwatched::Entry {
+            number: 1,
+            path: PathId::new(1),
+            place,
+            from,
+            seen: false,
+            holds,
+        };
+        let mut other = known(&site, &contract, [s, 5.0]);
+        other.news = other::News::Appeared;
+        let mut findings = findings::Findings::default();
+        let seen = on(&site, PathId::new(1), [s, 5.0]);
+        other.follow::<Sound>(&contract, &seen, &mut entry, &mut findings);
+        (
+            other.news,
+            findings.breach,
+            [other.settled, other.counted],
+            entry.holds,
+        )
+    };
+    use other::News::{Appeared, Watched};
+    for from in [50.0, FAR] {
+        assert_eq!(
+            follows(10.2, from, true),
+            (Watched, None, [0b10, u8::MAX], true)
+        );
+        assert_eq!(
+            follows(10.2, from, false),
+            (Watched, None, [0b10, 0], false)
+        );
+    }
+    assert_eq!(follows(20.0, 50.0, true), (Watched, Some(1), [0, 0], false));
+    // Who has left is not back again.
+    assert_eq!(follows(20.0, FAR, true), (Appeared, None, [0, 0], false));
+}
+
 /// Both with a metre to spare.
 #[test]
 fn the_first_zone_that_neither_has_left_is_entered_next() {
@@ -313,6 +394,58 @@ fn the_line_is_as_near_as_it_may_be() {
     };
     scene.wait_at_line::<Sound>(&contract, way, false);
     near(hazards.nearest_rest(), 40.0 - 20.0 - 0.3);
+}
+
+/// It is 0.2 m beyond it, if sensors err so, and comes to rest farther on.
+#[test]
+fn one_that_creeps_over_its_line_rests_where_it_can() {
+    let mut builder = Site::builder();
+    builder.tolerance(0.0);
+    for route in [east(), north()] {
+        builder.path(&route, Class::Car, Footprint::PAPER).unwrap();
+    }
+    builder.line(EGO, 40.0).unwrap();
+    let site = builder.build().unwrap();
+    let (contract, way, own) = (errs(WORST), site.way(EGO).unwrap(), [39.9, 1.0]);
+    let inherited = Inherited::all(&contract, [0.0; 2]);
+    let mut hazards = hazards(&site, &contract, own, &[(1, [20.0, 5.0], 0)]);
+    let mut scene = scene::Scene {
+        ego: &Own::new(&contract, &ego(&site, own), -FAR),
+        hazards: &mut hazards,
+        inherited: &inherited,
+        most: 2.5,
+    };
+    scene.wait_at_line::<Sound>(&contract, way, false);
+    let brakes = margin::departure(&contract, own[1], &inherited, -3.0).braking;
+    let rest = margin::rest(&contract, brakes, 0.0);
+    near(hazards.nearest_rest(), rest + contract.slack);
+}
+
+#[test]
+fn a_remembered_plan_holds_with_a_fifth_of_the_slack_less() {
+    let own = Own {
+        s: 0.0,
+        speed: 6.0,
+        least: 0.0,
+    };
+    let inherited = Inherited::all(&WORST, [0.0; 2]);
+    let brakes = margin::departure(&WORST, own.speed, &inherited, -3.0).braking;
+    let rest = margin::rest(&WORST, brakes, 0.0);
+    let holds = |spare: f32| {
+        let mut hazards = Hazards::new();
+        let scene = scene::Scene {
+            ego: &own,
+            hazards: &mut hazards,
+            inherited: &inherited,
+            most: 3.0,
+        };
+        let closed = Closed {
+            number: 1,
+            from: rest + WORST.slack + spare,
+        };
+        scene.holds::<Sound>(&WORST, Plan { go: 0 })(&Hazard::closed(&WORST, &own, closed))
+    };
+    assert!(holds(0.0) && holds(-0.0019) && !holds(-0.0021));
 }
 
 /// The ego, 14 m long, is on both crossings at once of one that crosses its path, turns, and crosses it again.
@@ -397,5 +530,153 @@ fn the_ego_leaves_its_zone_only_if_what_is_ahead_can_be_passed_or_stopped_before
     // Another is in its zone, too, or it stands in none, or its nose alone is in one.
     assert!(!leaves(&[hazard(-2.0, 1.5, Passage::Never), next]));
     assert!(!leaves(&[next]));
-    assert!(!leaves(&[hazard(-0.4, 1.5, free)]));
+    assert!(!leaves(&[hazard(-0.5, 1.5, free)]));
+    // Another is at the edge of its zone, or right behind it.
+    let distance = |distance| {
+        let speed = 1.0;
+        leaves(&[hazard(-2.0, 1.5, Passage::Before { distance, speed })])
+    };
+    assert!(distance(12.0) && !distance(0.0));
+    let gap = |gap| {
+        let (speed, arrives) = (0.0, FAR);
+        let ahead = Passage::Ahead {
+            gap,
+            speed,
+            arrives,
+        };
+        leaves(&[hazard(-2.0, 1.5, ahead)])
+    };
+    assert!(gap(12.0) && !gap(0.0));
+}
+
+/// A lane from 40 m of the ego and 30 m of the other on, in which they are 5 m apart.
+const LANE: Zone = Zone {
+    ego: Span {
+        from: 40.0,
+        to: FAR,
+    },
+    other: Span {
+        from: 30.0,
+        to: FAR,
+    },
+    lead: Span {
+        from: -5.0,
+        to: 5.0,
+    },
+    kind: crate::junction::ConflictKind::Merging,
+};
+
+/// The only hazard in [`LANE`] of an ego and an other that are seen exactly.
+fn in_lane(contract: &Contract, own: State, other: State) -> Hazard {
+    let mut site = site(&[east(), ramp()]);
+    site.conflicts_mut()[1].zones = [Some(LANE), None, None];
+    let hazards = hazards(&site, contract, own, &[(1, other, 0)]);
+    *hazards.iter().next().unwrap()
+}
+
+#[test]
+fn the_ego_follows_whom_it_may_rest_behind_beyond_the_entry_and_enters_ahead_of_others() {
+    let follows = |other: State| in_lane(&WORST, [20.0, 5.0], other).passage == Passage::Never;
+    // 20 m before the entry, and 5 m behind an other at 45 m.
+    assert!(!follows([45.0, 0.0]) && follows([45.01, 0.0]));
+    // 4 m/s take a metre at 8 m/s²; it comes to rest behind the other, wherever the lane begins.
+    let hazard = in_lane(&WORST, [20.0, 5.0], [60.0, 4.0]);
+    assert_eq!((hazard.limit, hazard.rest), (36.0, 36.0));
+}
+
+#[test]
+fn one_that_has_arrived_counts_on_the_ego_until_that_is_in_the_lane() {
+    let arrives = |own: f32| {
+        let hazard = in_lane(&Contract::ALL_WAY_STOP, [own, 1.0], [own + 1.0, 1.0]);
+        match hazard.passage {
+            Passage::Ahead { arrives, .. } => arrives,
+            other => panic!("{other:?}"),
+        }
+    };
+    assert!(arrives(39.9) < FAR);
+    assert_eq!(arrives(40.0), FAR);
+}
+
+#[test]
+fn one_that_touches_its_leader_is_behind_it() {
+    let behind = |other: f32| {
+        let site = site(&[east(), ramp()]);
+        let own = Own::new(&WORST, &ego(&site, [20.0, 5.0]), -FAR);
+        lane::behind::<Sound>(&WORST, &LANE, &own, &known(&site, &WORST, [other, 4.0]))
+    };
+    assert_eq!([24.5, 25.0, 26.0].map(behind), [-0.5, 1.0, 2.0]);
+}
+
+#[test]
+fn a_zone_beyond_those_that_precedence_opens_is_waited_for_where_it_begins() {
+    let far = route(&[(20.0, -60.0), (20.0, 60.0)]);
+    let site = site(&[east(), north(), far]);
+    let [near, far] = [1, 2].map(|i| zone(&site, i));
+    let own = near.ego.from - 5.0;
+    let others = [
+        (1, [near.other.from - 5.0, 0.0], precedence::ALL),
+        (2, [20.0, 5.0], 0),
+    ];
+    let hazards = hazards(&site, &Contract::ALL_WAY_STOP, [own, 0.0], &others);
+    assert_eq!(hazards.nearest_rest(), far.ego.from - own);
+}
+
+#[test]
+fn a_plan_counts_on_each_lane_that_it_enters_ahead_of_somebody() {
+    let site = site(&[east(), ramp(), north()]);
+    let mut run = Run::new(&site, WORST);
+    run.decide([20.0, 5.0], &[(1, [10.0, 5.0]), (2, [10.0, 5.0])], 0.0);
+    let ahead = Passage::Ahead {
+        gap: 50.0,
+        speed: 5.0,
+        arrives: FAR,
+    };
+    let before = Passage::Before {
+        distance: 50.0,
+        speed: 5.0,
+    };
+    let hazard = |place, zone, target, passage| Hazard {
+        who: Who::Watched { number: 9, place },
+        zone,
+        suspect: false,
+        yields: false,
+        target,
+        limit: 1.0,
+        rest: 1.0,
+        rest_beyond: FAR,
+        passage,
+    };
+    let all = [
+        hazard(0, 1, 5.0, ahead),
+        hazard(0, 2, 10.0, ahead),
+        hazard(1, 0, 10.1, ahead),
+        hazard(1, 2, 9.0, before),
+        hazard(7, 0, 9.0, ahead),
+    ];
+    let verified = super::super::verified::Verified {
+        plan: Plan { go: 5 },
+        margin: 1.0,
+        passes: 10.0,
+    };
+    let hazards = hazards::tests::just(&all);
+    run.shield.count_on(&hazards, verified);
+    let counted: std::vec::Vec<_> = run.shield.tracks.iter().map(|it| it.counted).collect();
+    assert_eq!(counted, [0b110, 0]);
+}
+
+/// What is seen by sensors that err by 0.3 m, which has left by 0.6 m more, will never seem not to have.
+#[test]
+fn one_that_has_certainly_left_is_no_news_and_gives_its_room_away() {
+    let north = |x: f32| route(&[(x, -60.0), (x, 60.0)]);
+    let site = site(&[east(), north(0.0), north(20.0)]);
+    let end = zone(&site, 1).other.to;
+    let seen = |beyond: f32| {
+        let mut run = Run::<Sound, 1>::with_rules(&site, errs(WORST));
+        run.decide([20.0, 0.0], &[(1, [end + beyond, 0.0])], 0.0);
+        let news = run.shield.tracks.iter().next().unwrap().news;
+        let second = [(1, [end + beyond, 0.0]), (2, [20.0, 0.0])];
+        (news, run.decide([20.0, 0.0], &second, 0.0).unwatched)
+    };
+    assert_eq!(seen(0.89), (other::News::Appeared, Some(2)));
+    assert_eq!(seen(0.91), (other::News::None, None));
 }

@@ -202,3 +202,20 @@ fn a_coordinate_out_of_range_is_the_one_that_is_named() {
     let [own, _] = refused(|vehicle| vehicle.pose.position = Point::new(8192.0, 0.0));
     assert_eq!(own.unwrap().field, Field::Offset);
 }
+
+#[test]
+fn a_place_may_be_off_by_what_sensors_and_the_junction_may_err() {
+    let mut builder = Site::builder();
+    builder.tolerance(0.25);
+    builder.path(&east(), Class::Car, Footprint::PAPER).unwrap();
+    let site = builder.build().unwrap();
+    let contract = WORST.to_builder().position_error(0.5).build().unwrap();
+    let offset = |y: f32| {
+        let mut own = ego(&site, [10.0, 5.0]);
+        own.pose.position.y += y;
+        let admitted = super::super::door::ego(site.way(EGO).unwrap(), &contract, &own);
+        admitted.ok().map(|admitted| admitted.pose[0].left)
+    };
+    assert!((offset(0.0).unwrap() - 0.77).abs() < 1e-4);
+    assert!(offset(0.769).is_some() && offset(0.771).is_none());
+}

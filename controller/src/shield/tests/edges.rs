@@ -252,3 +252,38 @@ fn a_newcomer_that_cannot_reach_its_zone_in_time_voids_no_plan() {
     }
     assert!(voided.is_empty(), "{voided:?}");
 }
+
+/// Where the ego, at rest, has to stop for number 9, of whom these tracks are seen, one after the other, beside another who
+/// is known before.
+fn stops_for<const N: usize>(seen: &[&[Track]]) -> f32 {
+    let site = crowded();
+    let mut run = Run::<Sound, N>::with_rules(&site, WORST);
+    let mut margin = |tracks: &[Track]| {
+        let first = numbered(&site, 1, 3, [1.0, 0.0]);
+        let all: std::vec::Vec<_> = core::iter::once(&first).chain(tracks).copied().collect();
+        run.observe(ego(&site, [20.0, 0.0]), &all, 0.0).margin
+    };
+    margin(&[]);
+    seen.iter().map(|tracks| margin(tracks)).last().unwrap()
+}
+
+#[test]
+fn a_number_is_left_on_a_path_by_a_track_that_is_placed_and_names_another() {
+    fn check<const N: usize>() {
+        let site = crowded();
+        let [near, far] = [2, 1].map(|path| numbered(&site, 9, path, [1.0, 0.0]));
+        let alone = stops_for::<N>(&[&[near]]);
+        assert!(stops_for::<N>(&[&[far]]) > alone + 0.5);
+        assert!(stops_for::<N>(&[&[near], &[far]]) > alone + 0.5);
+        let stays = |seen: &[&[Track]]| (stops_for::<N>(seen) - alone).abs() < 0.1;
+        // Two of one number are both there; and one may be where its state is refused, or where nothing is seen of it.
+        for both in [[near, far], [far, near]] {
+            assert!(stays(&[&both]));
+            assert!(stays(&[&[near], &both]));
+        }
+        let either = far.or(PathId::new(2), 1.0).unwrap();
+        assert!(stays(&[&[near], &[either]]) && stays(&[&[near], &[]]));
+    }
+    check::<8>();
+    check::<1>();
+}

@@ -266,3 +266,31 @@ fn only_who_was_out_of_sight_comes_from_there() {
     assert!(!emerges(true, false), "it was in sight, and refused");
     assert!(!emerges(false, true), "it was in sight, by another number");
 }
+
+/// To forget one who is not there, or who has left, says nothing of those who come out of sight.
+#[test]
+fn whoever_is_forgotten_that_nobody_knows_was_not_in_sight() {
+    let second = route(&[(14.0, -60.0), (14.0, 60.0)]);
+    let site = site(&[east(), north(), second]);
+    let emerges = |forgotten: u16, left: bool| {
+        let mut run = Run::new(&site, WORST);
+        let own = ego(&site, [20.0, 0.0]);
+        let bystander = if left { [90.0, 0.0] } else { [30.0, 0.0] };
+        for appears in [false, false, true] {
+            let now = Instant::from_millis(run.millis + 100);
+            let (path, from, speed) = (PathId::new(1), 33.0, 3.0);
+            run.shield
+                .set_sight(now, &[Sight { path, from, speed }])
+                .unwrap();
+            let tracks = [track(&site, 2, bystander), track(&site, 1, [33.1, 3.0])];
+            run.observe(own, &tracks[..1 + usize::from(appears)], 0.0);
+            if !appears {
+                run.shield.forget(forgotten);
+            }
+        }
+        let news = |it: &super::super::other::Other| it.news == super::super::other::News::Emerged;
+        run.shield.tracks.iter().any(news)
+    };
+    assert!(emerges(77, false) && emerges(77, true) && emerges(2, true));
+    assert!(!emerges(2, false), "it was in sight");
+}

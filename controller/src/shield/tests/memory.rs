@@ -569,3 +569,231 @@ fn overruns(replaced: bool) -> u32 {
 fn commands_in_flight_lead_to_what_the_former_contract_says() {
     assert_eq!([overruns(false), overruns(true)], [0, 0]);
 }
+
+/// The ego is committed by a plan that just clears its zone, and then is found where it can neither do so nor stop.
+#[test]
+fn a_plan_is_judged_anew_against_all_if_the_ego_is_not_where_its_commands_lead() {
+    let site = crossing();
+    for (own, kept) in [(NEXT, true), ([51.0, 6.8], false)] {
+        let mut run = Run::new(&site, WORST);
+        let near = zone(&site, 1).other.from - 10.2;
+        let first = run.decide([50.0, 10.0], &[(1, [near, 5.0])], 3.0);
+        assert_eq!(first.cause, Cause::Policy);
+        let decision = run.decide(own, &[(1, [near + 0.5, 5.0])], f32::NAN);
+        assert_eq!(decision.breach.is_none(), kept, "{decision:?}");
+        assert_eq!(decision.plan.is_some(), kept, "{decision:?}");
+    }
+}
+
+/// A metre beside its path, a period after it committed itself, or half a period later.
+#[test]
+fn without_eyes_a_plan_is_given_up_that_is_late_or_of_another_contract() {
+    let site = crossing();
+    let plan = |late: u64, contract: Contract| {
+        let mut run = Run::new(&site, WORST);
+        let plan = committed(&mut run);
+        run.shield.set_contract(contract).unwrap();
+        run.millis += late;
+        let mut own = ego(&site, NEXT);
+        own.pose.position.y += 1.0;
+        let decision = run.observe(own, &[], 0.0);
+        assert!(
+            decision.headroom.offset.unwrap().left < -0.9,
+            "{decision:?}"
+        );
+        assert_eq!(decision.margin, 0.0);
+        let brakes = -contract.ego.emergency;
+        let carries_on = if decision.plan.is_some() { 3.0 } else { brakes };
+        assert_eq!(decision.acceleration, carries_on);
+        assert!(decision.plan.is_none_or(|left| left == plan.tail()));
+        decision.plan.is_some()
+    };
+    let bolder = WORST.to_builder().ego_emergency(3.5).build().unwrap();
+    assert!(plan(0, WORST));
+    assert!(!plan(50, WORST) && !plan(0, bolder));
+}
+
+#[test]
+fn a_late_call_is_named_with_the_time_since_the_last_one() {
+    let site = crossing();
+    let mut run = Run::new(&site, WORST);
+    run.decide([20.0, 5.0], &[], 0.0);
+    run.millis += 200;
+    let Some(Fault::OffPeriod { elapsed, period }) = run.decide([21.0, 5.0], &[], 0.0).fault else {
+        panic!("it is late");
+    };
+    assert!((elapsed - 0.3).abs() < 1e-6 && period == 0.1, "{elapsed} s");
+}
+
+#[test]
+fn a_margin_needs_two_numbers() {
+    let site = crossing();
+    let run = Run::new(&site, WORST);
+    let seen = Observation {
+        ego: ego(&site, [20.0, 5.0]),
+        tracks: &[],
+    };
+    let margin = |previous, acceleration| run.shield.margin(&seen, previous, acceleration).err();
+    assert_eq!(margin(0.0, 0.0), None);
+    for (previous, acceleration) in [(f32::NAN, 0.0), (0.0, f32::INFINITY)] {
+        assert_eq!(margin(previous, acceleration), Some(Fault::Proposal));
+    }
+}
+
+/// Its line is 6 m before the zone that somebody stands in; the ego rests 3 m beyond it.
+#[test]
+fn one_that_rests_beyond_its_line_may_go_on_to_the_zone() {
+    let mut builder = Site::builder();
+    builder.tolerance(0.0);
+    for route in [east(), north()] {
+        builder.path(&route, Class::Car, Footprint::PAPER).unwrap();
+    }
+    let from = zone(&crossing(), 1).ego.from;
+    builder.line(EGO, from - 6.0).unwrap();
+    let site = builder.build().unwrap();
+    let mut run = Run::new(&site, WORST);
+    let (own, stands) = ([from - 3.0, 0.0], (1, [60.0, 0.0]));
+    let first = run.decide(own, &[stands], 0.0);
+    assert_eq!(first.plan, Some(Plan { go: 0 }));
+    let decision = run.decide(own, &[stands], 0.5);
+    assert_eq!(
+        (decision.cause, decision.acceleration),
+        (Cause::Policy, 0.5)
+    );
+}
+
+#[test]
+fn of_two_who_appear_before_one_zone_the_first_is_watched() {
+    let site = crowded();
+    let mut run = Run::<Sound, 1>::with_rules(&site, WORST);
+    let on_second = |number| {
+        let vehicle = on(&site, PathId::new(3), [10.0 + f32::from(number), 0.0]);
+        Track::on(number, PathId::new(3), vehicle)
+    };
+    let decision = run.observe(ego(&site, [20.0, 0.0]), &[on_second(5), on_second(6)], 0.0);
+    assert_eq!(decision.unwatched, Some(6));
+}
+
+#[test]
+fn one_that_is_missing_and_two_of_one_number_stay_known_while_others_are_seen() {
+    let second = route(&[(12.0, -60.0), (12.0, 60.0)]);
+    let site = site(&[east(), north(), second]);
+    let known = |run: &Run<'_>| run.shield.tracks.iter().map(|it| it.path).collect();
+    let both: std::vec::Vec<_> = [1, 2].map(PathId::new).into();
+    let mut run = Run::new(&site, WORST);
+    let (one, two) = ((1, [20.0, 5.0]), (2, [20.0, 5.0]));
+    run.decide([20.0, 0.0], &[one, two], 0.0);
+    run.decide([20.0, 0.0], &[(2, [20.5, 5.0])], 0.0);
+    let paths: std::vec::Vec<_> = known(&run);
+    assert_eq!(paths, both);
+    let mut run = Run::new(&site, WORST);
+    let same = [1, 2].map(|path| {
+        Track::on(
+            7,
+            PathId::new(path),
+            on(&site, PathId::new(path), [20.0, 0.0]),
+        )
+    });
+    for _ in 0..2 {
+        run.observe(ego(&site, [20.0, 0.0]), &same, 0.0);
+        let paths: std::vec::Vec<_> = known(&run);
+        assert_eq!(paths, both);
+    }
+}
+
+#[test]
+fn the_ego_goes_before_a_track_on_all_of_its_paths_or_not() {
+    let second = route(&[(0.0, -60.0), (0.0, -25.0), (50.0, 35.0)]);
+    let site = site(&[east(), north(), second]);
+    let mut run = Run::new(&site, WORST);
+    let vehicle = on(&site, PathId::new(1), [20.0, 0.0]);
+    let either = Track::on(5, PathId::new(1), vehicle);
+    let tracks = [
+        either.or(PathId::new(2), 20.0).unwrap(),
+        track(&site, 1, [10.0, 0.0]),
+    ];
+    run.observe(ego(&site, [20.0, 0.0]), &tracks, 0.0);
+    let mut goes = |claims: [u8; 3]| {
+        for (other, claims) in run.shield.tracks.iter_mut().zip(claims) {
+            other.claims = claims;
+        }
+        [5, 1, 9].map(|number| run.shield.goes_before(number))
+    };
+    const ALL: u8 = precedence::ALL;
+    assert_eq!(goes([ALL, ALL, 0]), [true, false, false]);
+    assert_eq!(goes([0, 0, ALL]), [false, true, false]);
+    for one in [[ALL, 0, 0], [0, ALL, 0], [1, ALL, 1]] {
+        assert_eq!(goes(one), [false; 3]);
+    }
+}
+
+/// An ego that came from afar to rest at its line, and another that is there on its road.
+fn at_their_lines(site: &Site) -> (Run<'_>, State) {
+    let mut run = Run::new(site, Contract::ALL_WAY_STOP);
+    let line = site.path(EGO).unwrap().line();
+    run.decide([line - 40.0, 9.0], &[], -3.0);
+    for _ in 0..3 {
+        run.decide([line, 0.0], &[(1, [line, 0.0])], -3.0);
+    }
+    (run, [line, 0.0])
+}
+
+/// Periods for which the ego, and the other, have perhaps and surely rested.
+fn rested(run: &Run<'_>) -> [[u16; 2]; 2] {
+    let other = run.shield.tracks.iter().next().unwrap();
+    [run.shield.presence.rested(), other.pair.other.rested()]
+}
+
+#[test]
+fn periods_without_a_call_are_perhaps_of_rest_up_to_sixteen() {
+    let site = crossing();
+    for (periods, perhaps) in [(1, 4), (2, 5), (16, 19), (17, u16::MAX), (40, u16::MAX)] {
+        let (mut run, rests) = at_their_lines(&site);
+        run.millis += 100 * (periods - 1);
+        run.decide(rests, &[(1, rests)], -3.0);
+        let surely = if periods == 1 { 4 } else { 0 };
+        assert_eq!(
+            rested(&run),
+            [[perhaps, surely], [u16::MAX, surely]],
+            "{periods}"
+        );
+    }
+}
+
+#[test]
+fn by_a_new_rule_or_period_rest_is_counted_anew() {
+    let site = crossing();
+    let rested_then = |contract: Contract| {
+        let (mut run, _) = at_their_lines(&site);
+        run.shield.set_contract(contract).unwrap();
+        rested(&run)
+    };
+    let now = Contract::ALL_WAY_STOP.to_builder();
+    let rule = Precedence::new(12.0, 5, 3.0, 20);
+    assert_eq!(
+        rested_then(now.slack(0.02).build().unwrap()),
+        [[3, 3], [u16::MAX, 3]]
+    );
+    for contract in [now.precedence(Some(rule)), now.period(0.11)] {
+        assert_eq!(rested_then(contract.build().unwrap()), [[u16::MAX, 0]; 2]);
+    }
+}
+
+#[test]
+fn an_ego_that_came_second_holds_the_zone_in_which_it_stands() {
+    let site = crossing();
+    let mut run = Run::new(&site, Contract::ALL_WAY_STOP);
+    let line = site.path(EGO).unwrap().line();
+    let other = (1, [line, 0.0]);
+    run.decide([line - 40.0, 9.0], &[(1, [line - 40.0, 9.0])], -3.0);
+    for _ in 0..12 {
+        run.decide([line - 40.0, 9.0], &[other], -3.0);
+    }
+    let stands = [zone(&site, 1).ego.from + 4.0, 0.0];
+    let mut claims = || {
+        run.decide(stands, &[other], -3.0);
+        run.shield.tracks.iter().next().unwrap().claims
+    };
+    let last = (0..12).map(|_| claims()).last();
+    assert_eq!(last, Some(0b1));
+}

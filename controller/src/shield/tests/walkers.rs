@@ -220,3 +220,18 @@ fn whoever_is_at_a_crossing_that_the_ego_has_passed_takes_no_room() {
     let decision = run.observe(ego(&site, [beyond, 1.0]), &at_the_end(&site, 2, 0..4), 0.0);
     assert_eq!(decision.unwatched, None);
 }
+
+/// Too near to stop, it can pass one who is at the end of the crossing, and nobody who is on the road.
+#[test]
+fn one_who_appears_on_the_road_voids_the_plan() {
+    let site = crossings();
+    let own = zone(&site, 1).ego.from - 4.0;
+    for (s, kept) in [(13.9, true), (7.0, false)] {
+        let mut run = Run::new(&site, WORST);
+        let before = run.observe(ego(&site, [own, 8.0]), &[], 0.0);
+        assert!(before.plan.is_some());
+        let appeared = [on_foot(&site, 1, [s, 0.0])];
+        let decision = run.observe(ego(&site, [own + 0.8, 8.0]), &appeared, 0.0);
+        assert_eq!(decision.plan.is_some(), kept, "{decision}");
+    }
+}
