@@ -223,7 +223,7 @@ proptest! {
         };
         let rests = [RestState::No, RestState::Perhaps, RestState::Surely];
         let (mut ego, mut pair) = (Presence::default(), PairMemory::default());
-        let mut note = |ego: &mut Presence, pair: &mut PairMemory, [mine, its]: [RestState; 2], [here, there]: [Arrived; 2]| {
+        let note = |ego: &mut Presence, pair: &mut PairMemory, [mine, its]: [RestState; 2], [here, there]: [Arrived; 2]| {
             ego.stay(&contract, mine, here);
             pair.other.stay(&contract, its, there);
             pair.pass::<Sound>(&contract, rule, right, ego);
