@@ -41,8 +41,8 @@ pub(crate) fn best<R: Rules>(
     };
     let mut passed = FAR;
     for hazard in hazards.iter() {
-        let (clears, speed) = going.clearing(departure.least, hazard.target);
-        passed = Real::min(passed, passage_margin::<R>(contract, hazard, clears, speed));
+        let (clears, _, passes) = passing::<R>(contract, hazard, (departure, going));
+        passed = Real::min(passed, passes);
         // Whatever comes after it cannot mend a hazard that is not passed in time.
         if passed <= best.margin || clears > HORIZON {
             break;
