@@ -17,7 +17,8 @@ The table has `NAME = NUMBER` for each constant, which --set overrides, and line
     calls  CALLEE    -     TIMES   OUTER   In a whole call of OUTER, so many calls of a function are made at most.
     size   CALLEE    REGISTER  REST        A call of this function has a constant SIZE in a register; REST is what it leaves to others.
 
-FUNCTION and TEXT find the source: the symbol of a function with the name of what is inlined there, and a line of that. They, CALLEE and OUTER are regular
+FUNCTION and TEXT find the source: the symbol of a function with the name of what is inlined there, and a line of that; a loop is found
+by lines of functions that all of its instructions come from. They, CALLEE and OUTER are regular
 expressions, `-` finds everything; ROUNDS and TIMES are expressions of constants. Loops inside each other in one line take their
 rounds from one iterator: they share them. A loop that is tested at its beginning is come to once more than it goes round.
 
@@ -27,6 +28,7 @@ Exit status 1 if a root cannot be bounded.
 
 import argparse
 import collections
+import itertools
 import re
 import subprocess
 import sys
@@ -111,7 +113,7 @@ class Table:
                     self.lines.append((kind, *columns, None)[:5])
 
     def number(self, expression):
-        return int(eval(expression, {"__builtins__": {}}, self.constants))
+        return int(eval(expression, {"__builtins__": {"min": min}}, self.constants))
 
     def rounds(self, places):
         """Which line of the sources a loop is in, of these, how often it goes round, and for a call of what."""
@@ -282,8 +284,7 @@ class Instructions(Program):
 
     def round_and_round(self, blocks, loop, how):
         """The longest ways through a loop to each edge out of it."""
-        ends = self.ends(blocks, loop)
-        counted = self.rules.rounds(self.sources.places(ends))
+        counted = self.rules.rounds(self.places(blocks, loop))
         if counted is None:
             raise Refused(f"a loop that is not in the table: {self.describe(blocks, loop)}")
         line, rounds, outer = counted
@@ -324,13 +325,14 @@ class Instructions(Program):
                 through.append((source, target, way))
         return through
 
-    def ends(self, blocks, loop):
-        """The addresses that tell which loop it is: of the branches back and of its header."""
+    def places(self, blocks, loop):
+        """Which lines tell what loop it is: those of the branches back and of its header, in functions that all of it is in."""
         latches = [block for at, block in blocks.items() if at in loop.blocks and any(t == loop.header for t, _ in block.edges)]
-        return [latch.addresses[-1] for latch in latches] + blocks[loop.header].addresses[::-1]
+        ends = [latch.addresses[-1] for latch in latches] + blocks[loop.header].addresses[::-1]
+        return self.sources.places(ends, [at for block in loop.blocks for at in blocks[block].addresses])
 
     def describe(self, blocks, loop):
-        places = self.sources.places(self.ends(blocks, loop))
+        places = self.places(blocks, loop)
         return f"{loop.header:#x}" + "".join(f"\n    {function}: {text}" for function, text in places)
 
 
@@ -472,14 +474,27 @@ class Sources:
                 self.lines[int(address[1], 16)] = [(*(place or ("", 0)), function), *around]
                 around = []
 
-    def places(self, addresses):
-        """Function and text of the lines that addresses come from, the innermost first."""
+    def places(self, addresses, inside=()):
+        """Function and text of the lines that addresses come from, the innermost first; only those of functions that all of
+        `inside` come from, if there are any."""
+        deepest = self.common(inside)
         found = {}
         for address in addresses:
-            for file, number, function in self.lines.get(address, []):
+            lines = self.lines.get(address, [])
+            for file, number, function in lines[max(0, len(lines) - deepest) :] if inside else lines:
                 if OURS.search(file) or function is None:
                     found.setdefault((f"{self.names[address]} {function}", self.text(file, int(number))))
         return found or {(self.names[addresses[0]], ""): None}
+
+    def common(self, addresses):
+        """How many functions, inlined in each other, all of these addresses come from: calls in the same lines."""
+        chains = []
+        for address in addresses:
+            lines = self.lines.get(address, [])
+            # What the compiler adds has no line.
+            if lines and int(lines[0][1]):
+                chains.append([None, *(line[:2] for line in lines[:0:-1])])
+        return sum(1 for _ in itertools.takewhile(lambda callers: len(set(callers)) == 1, zip(*chains)))
 
     def text(self, file, number):
         if file not in self.texts:

@@ -5,7 +5,7 @@ use super::clock::Tick;
 use super::own::Own;
 use super::precedence::{self, Right};
 use super::rules::Rules;
-use super::waiting::{Arrived, Presence, RestState, Sighting};
+use super::waiting::{Arrived, Presence, Sighting};
 use crate::instant::Instant;
 use crate::junction::RightOfWay;
 use crate::junction::zone::FAR;
@@ -28,11 +28,9 @@ impl<const N: usize, R: Rules> Shield<'_, N, R> {
         // A call that is not on time says nothing of how long somebody has moved or rested.
         let on_time = !matches!(tick, Tick::Next { on_time: false, .. });
         // Of the periods in which there was no call, nothing is known.
-        let rest = |missed, seen| match missed {
-            0 if on_time => seen,
-            _ => RestState::Perhaps,
-        };
-        let counted = (0..periods.min(LOST)).rev();
+        let counted = periods.min(LOST);
+        let seen = u16::from(on_time && counted > 0);
+        let missed = counted - seen;
         let way = self.way;
         let arrive = |presence: &mut Presence, path, seen: Sighting| {
             if periods == 0 {
@@ -49,8 +47,9 @@ impl<const N: usize, R: Rules> Shield<'_, N, R> {
         let mine = Sighting::of_ego(contract, ego);
         let here = arrive(&mut self.presence, way.ego(), mine);
         let before = self.presence;
-        for missed in counted.clone() {
-            self.presence.stay(contract, rest(missed, mine.rest), here);
+        self.presence.miss(here, missed);
+        if seen > 0 {
+            self.presence.stay(contract, mine.rest, here);
         }
         for other in self.tracks.iter_mut() {
             let Some(conflict) = way.conflict(other.path) else {
@@ -63,12 +62,12 @@ impl<const N: usize, R: Rules> Shield<'_, N, R> {
             }
             let its = other.sighting(contract);
             let there = arrive(&mut other.pair.other, other.path, its);
-            // The ego, as it was in the same periods.
-            let mut own = before;
-            for missed in counted.clone() {
-                own.stay(contract, rest(missed, mine.rest), here);
-                (other.pair.other).stay(contract, rest(missed, its.rest), there);
-                other.pair.pass::<R>(contract, rule, turns, &own);
+            other
+                .pair
+                .miss::<R>(rule, turns, (&before, here), there, missed);
+            if seen > 0 {
+                other.pair.other.stay(contract, its.rest, there);
+                other.pair.pass::<R>(contract, rule, turns, &self.presence);
             }
             other.claims = other.pair.claims(contract, rule, right, &self.presence);
             if let Some(ego) = ego.filter(|_| other.claims != precedence::ALL) {

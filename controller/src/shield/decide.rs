@@ -30,34 +30,30 @@ impl<const N: usize, R: Rules> Shield<'_, N, R> {
             let nearest = nearest(&contract.ego, scene.most, wanted, accepted);
             nearest.filter(|&(found, _)| self.is_nearer(scene, wanted, found))
         };
-        let planned = found.is_some() || self.memory.plan().is_some();
-        let cause = if !planned {
-            Cause::Fallback(Fault::NoPlan)
-        } else if !proposal.is_finite() {
-            Cause::Fallback(Fault::Proposal)
-        } else if verdict.margin >= 0.0 {
-            Cause::Policy
-        } else {
-            Cause::Shielded(Intervention {
-                action: if found.is_some() {
-                    Action::Nearest
-                } else {
-                    Action::Remembered
-                },
-                reason: scene.reason::<R>(&contract, wanted),
-            })
-        };
-        let acceleration = match found {
+        let (acceleration, action) = match found {
             Some((acceleration, verified)) => {
                 self.memory.verified(verified.plan, now);
                 self.tracks.unwatched_avoided();
                 self.count_on(&*scene.hazards, verified);
-                acceleration
+                (acceleration, Some(Action::Nearest))
             }
-            None if !planned && scene.leaves::<R>(&contract) => {
-                allowed(&contract.ego, scene.most, contract.ego.go)
+            None if self.memory.plan().is_some() => {
+                (self.carry_on(scene.most), Some(Action::Remembered))
             }
-            None => self.carry_on(scene.most),
+            None if scene.leaves::<R>(&contract) => {
+                let go = allowed(&contract.ego, scene.most, contract.ego.go);
+                (go, None)
+            }
+            None => (self.carry_on(scene.most), None),
+        };
+        let cause = match action {
+            None => Cause::Fallback(Fault::NoPlan),
+            Some(_) if !proposal.is_finite() => Cause::Fallback(Fault::Proposal),
+            Some(_) if verdict.margin >= 0.0 => Cause::Policy,
+            Some(action) => Cause::Shielded(Intervention {
+                action,
+                reason: scene.reason::<R>(&contract, wanted),
+            }),
         };
         Decision {
             cause,

@@ -110,10 +110,11 @@ fn vehicle_on(
     let direction = vehicle.pose.direction;
     let norm = crate::geometry::length(&direction);
     check(Field::Direction, norm, UNIT)?;
-    let away = distance(&vehicle.pose.position, &line.pose(vehicle.s).position);
+    let there = line.pose(vehicle.s);
+    let away = distance(&vehicle.pose.position, &there.position);
     let offset = Room::up_to(spare, away);
     let offset = keep(offset, Field::Offset, away, [0.0, spare])?;
-    let cosine = aligned(line, vehicle, spare) / norm;
+    let cosine = aligned(line, (vehicle, there), spare) / norm;
     let heading = Room::cosine(ALIGNED, cosine);
     let heading = if walks {
         // It may turn back.
@@ -128,10 +129,10 @@ fn vehicle_on(
     })
 }
 
-/// How well the vehicle points along its path, which may have a kink within `spare` (m) of where it is.
-fn aligned(line: Polyline<'_>, vehicle: Vehicle, spare: f32) -> f32 {
+/// How well the vehicle points along its path, which is like `there` where it is, and may have a kink within `spare` (m).
+fn aligned(line: Polyline<'_>, (vehicle, there): (Vehicle, Pose), spare: f32) -> f32 {
     let cosine = |pose: Pose| vehicle.pose.direction.dot(&pose.direction);
-    let mut best = cosine(line.pose(vehicle.s));
+    let mut best = cosine(there);
     if best < ALIGNED {
         for s in [vehicle.s - spare, vehicle.s + spare] {
             best = Real::max(best, cosine(line.pose(s)));

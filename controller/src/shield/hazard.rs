@@ -8,7 +8,7 @@ use super::precedence::has;
 use super::rules::Rules;
 use super::unwatched::Closed;
 use crate::junction::zone::{FAR, Zone};
-use crate::junction::{PathId, RouteConflict, Way};
+use crate::junction::{PathId, Way};
 
 /// A zone that the ego has not cleared and the other has not left.
 ///
@@ -103,32 +103,13 @@ impl Hazard {
     }
 }
 
-/// The hazards that `other` is to the ego, each with its zone.
-pub(super) fn of<'z, R: Rules>(
-    contract: &Contract,
-    way: Way<'z>,
-    ego: &Own,
-    other: &Other,
-) -> impl Iterator<Item = (&'z Zone, Hazard)> {
-    let zones = way.conflict(other.path).map(RouteConflict::zones);
-    let arrives = contract.precedence.map_or(FAR, |rule| {
-        arrival(way, rule, other.path) - other.bounds.s.to
-    });
-    (0_u8..)
-        .zip(zones.into_iter().flatten())
-        .filter_map(move |(index, zone)| {
-            let hazard = hazard::<R>(contract, (index, zone), ego, other, arrives)?;
-            Some((zone, hazard))
-        })
-}
-
-/// The hazard of one zone, if it is one.
-fn hazard<R: Rules>(
-    contract: &Contract,
+/// The hazard that `other` is to the ego in a zone, the one with number `index` of the two, if it is one there.
+#[inline(never)] // Once in flash.
+pub(super) fn of<R: Rules>(
+    (contract, way): (&Contract, Way<'_>),
     (index, zone): (u8, &Zone),
     ego: &Own,
     other: &Other,
-    arrives: f32,
 ) -> Option<Hazard> {
     let error = contract.position_error;
     let bounds = other.bounds;
@@ -179,7 +160,10 @@ fn hazard<R: Rules>(
                 passage: Passage::Ahead {
                     gap: gap_ahead(zone, ego, other),
                     speed,
-                    arrives: if waits { arrives } else { FAR },
+                    arrives: match contract.precedence {
+                        Some(rule) if waits => arrival(way, rule, other.path) - bounds.s.to,
+                        _ => FAR,
+                    },
                 },
                 ..crossing
             }

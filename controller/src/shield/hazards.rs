@@ -80,7 +80,10 @@ impl Hazards {
         let Some(conflict) = way.conflict(other.path) else {
             return;
         };
-        for (zone, hazard) in of::<R>(contract, way, ego, other) {
+        for (index, zone) in (0_u8..).zip(conflict.zones()) {
+            let Some(hazard) = of::<R>((contract, way), (index, zone), ego, other) else {
+                continue;
+            };
             if has(other.claims, hazard.zone)
                 && granted(contract, way, hazard.passage, zone, (ego, other))
             {
@@ -154,6 +157,7 @@ impl Hazards {
     fn insert<R: Rules>(&mut self, hazard: Hazard) {
         // 8 others, 8 edges of sight and 4 pedestrians of 3 zones each, and what is closed: `Shield` and `MAX_ZONES` see to it that there are no more.
         let _ = self.sorted.push(hazard);
+        let mut place = self.sorted.len().saturating_sub(1);
         for i in (1..self.sorted.len()).rev() {
             let Some([before, after]) = self.sorted.get_mut(i - 1..=i) else {
                 break;
@@ -161,7 +165,11 @@ impl Hazards {
             if !R::sooner(hazard.target, before.target) {
                 break;
             }
-            (*after, *before) = (*before, hazard);
+            *after = *before;
+            place = i - 1;
+        }
+        if let Some(it) = self.sorted.get_mut(place) {
+            *it = hazard;
         }
     }
 

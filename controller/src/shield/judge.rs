@@ -4,7 +4,6 @@ use super::Shield;
 use super::choice::most;
 use super::clock::Tick;
 use super::findings::Findings;
-use super::hazard::Hazard;
 use super::hazards::Hazards;
 use super::own::Own;
 use super::rules::Rules;
@@ -39,11 +38,7 @@ impl<const N: usize, R: Rules> Shield<'_, N, R> {
         let (context, known) = ((&self.contract, self.way), (ego, &self.tracks));
         let mut hazards = Hazards::new();
         let mut scene = Scene::new::<N, R>(context, known, findings.closed, acts, &mut hazards);
-        self.verify_again(&scene, now, deviated || recheck);
-        let goes = self.memory.plan().is_some_and(|plan| {
-            let holds = scene.holds::<R>(&self.contract, plan);
-            plan.go > 0 && scene.hazards.iter().all(holds)
-        });
+        let goes = self.verify_again(&scene, now, deviated || recheck);
         scene.wait_at_line::<R>(&self.contract, self.way, goes);
         let breach = if deviated {
             Some(Breach::Ego)
@@ -103,28 +98,36 @@ impl<const N: usize, R: Rules> Shield<'_, N, R> {
         findings
     }
 
-    /// Voids the remembered plan unless it is safe against whoever it was not verified against, or against `all`.
-    pub(super) fn verify_again(&mut self, scene: &Scene<'_>, now: Instant, all: bool) {
+    /// Voids the remembered plan unless it is safe against whoever it was not verified against, or against `all`. Whether it
+    /// does not brake yet, and holds against everybody.
+    pub(super) fn verify_again(&mut self, scene: &Scene<'_>, now: Instant, all: bool) -> bool {
         let Some(plan) = self.memory.plan() else {
-            return;
+            return false;
         };
-        let kept = {
+        let (mut kept, mut goes) = (true, plan.go > 0);
+        {
             let holds = scene.holds::<R>(&self.contract, plan);
-            let watched = |hazard: &&Hazard| (all || hazard.suspect) && !hazard.is_closed();
-            let watched_hold = scene.hazards.iter().filter(watched).all(&holds);
+            for hazard in scene.hazards.iter() {
+                let new = (all || hazard.suspect) && !hazard.is_closed();
+                if kept && new || goes {
+                    let safe = holds(hazard);
+                    kept &= safe || !new;
+                    goes &= safe;
+                }
+            }
             let (context, ego) = ((&self.contract, self.way), scene.ego);
-            let unwatched_hold = (self.tracks)
+            kept &= (self.tracks)
                 .unwatched_hold::<R>(context, ego, all, |hazards| hazards.iter().all(&holds));
-            watched_hold && unwatched_hold
-        };
-        if !kept {
-            self.void();
-        } else {
+        }
+        if kept {
             self.tracks.hidden.holds = true;
             if all {
                 self.memory.confirmed(now);
             }
+        } else {
+            self.void();
         }
+        kept && goes
     }
 
     pub(super) fn void(&mut self) {

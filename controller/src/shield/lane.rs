@@ -40,6 +40,12 @@ pub(super) fn behind<R: Rules>(contract: &Contract, zone: &Zone, ego: &Own, othe
     gap + R::earliest_rest(contract, other.bounds.speed.from)
 }
 
+/// [`Rules::safe_gap`] outside of the search for a plan.
+#[inline(never)] // Once in flash.
+pub(super) fn safe_gap<R: Rules>(contract: &Contract, speed: f32, ego_speed: f32) -> f32 {
+    R::safe_gap(contract, speed, ego_speed)
+}
+
 /// Notes for each lane that the ego shares with `other` whether it is ahead there, and the other keeps its distance
 /// from now on: the plan in force counted on it, or the gap is enough, or it was so when the other appeared.
 pub(super) fn settle<'z, R: Rules>(
@@ -54,7 +60,7 @@ pub(super) fn settle<'z, R: Rules>(
             continue;
         }
         let slowest = Real::max(ego.speed - contract.speed_error, 0.0);
-        let needs = R::safe_gap(contract, other.bounds.speed.to, slowest);
+        let needs = safe_gap::<R>(contract, other.bounds.speed.to, slowest);
         let enough = gap_ahead(zone, ego, other) >= needs;
         if appeared || has(other.counted, index) || enough {
             other.settled |= 1 << index;

@@ -132,7 +132,7 @@ impl<R: Real> Going<R> {
 
     /// The time (s) from now at which the ego has certainly gone `target` metres, if it goes from
     /// `least` on, and the least speed (m/s) that it then has.
-    #[inline(never)] // Once in flash.
+    #[inline(always)]
     #[must_use]
     pub fn clearing(&self, least: Reach<R>, target: R) -> (R, R) {
         let (cap, [period, response]) = (self.cap, self.late);
@@ -141,11 +141,10 @@ impl<R: Real> Going<R> {
             let longest = (target - least.distance).max(R::of(0.0)) / cap;
             least.fading(cap, fade * longest)
         });
-        let (time, speed) = if self.lags {
-            least.until_from_rest(target, self.acceleration, cap)
-        } else {
-            least.until(target, self.acceleration, cap)
-        };
+        let (stands, moving) = least.setting_off(self.acceleration);
+        let least = if self.lags { moving } else { least };
+        let (time, speed) = least.until(target, self.acceleration, cap);
+        let time = if self.lags { stands + time } else { time };
         (time + period + response, speed)
     }
 }
@@ -161,8 +160,8 @@ pub fn clearing<R: Real>(contract: &Contract, least: Reach<R>, target: R) -> (R,
 #[must_use]
 pub fn periods(contract: &Contract, clears: f32) -> u16 {
     let count = (clears - contract.shortest_period()) / contract.period;
-    // Truncates towards zero and saturates; bounded by the horizon in any case.
-    let whole = count as u16;
+    // Truncates towards zero and saturates; bounded by the horizon in any case. By way of 32 bits, for which cores have an instruction.
+    let whole = (count as u32).min(u16::MAX.into()) as u16;
     if f32::from(whole) < count {
         whole.saturating_add(1)
     } else {
@@ -176,7 +175,7 @@ pub fn braking<R: Real>(contract: &Contract) -> R {
 }
 
 /// The distance (m) from here at which the ego is at rest at the latest, if it goes for `time` more and then brakes.
-#[inline(never)] // Once in flash.
+#[inline(always)]
 pub fn rest<R: Real>(contract: &Contract, most: Reach<R>, time: R) -> R {
     let go = strongest(contract, R::of(contract.ego.go));
     most.at_most(go, time).rest(braking(contract))
@@ -214,6 +213,7 @@ pub fn walks_clear<R: Real>(contract: &Contract, distance: R, speed: R, time: R)
 
 /// The gap (m) that an other at `speed` needs to stop behind an ego at `ego_speed`, however hard it
 /// accelerates before it reacts, and however hard the ego brakes within its means.
+#[inline(always)]
 pub fn safe_gap<R: Real>(contract: &Contract, speed: R, ego_speed: R) -> R {
     let follower = contract.follower;
     let stopped = rush(contract, speed, R::of(follower.reaction)).rest(R::of(follower.braking));

@@ -5,7 +5,7 @@
 
 use super::contract::{Contract, Precedence};
 use super::rules::Rules;
-use super::waiting::{Presence, dip, sets_off};
+use super::waiting::{Arrived, Presence, dip, sets_off};
 use crate::instant::micros;
 use crate::junction::zone::Zone;
 use crate::junction::{Path, PathId, Priority, RightOfWay, RouteConflict, Way};
@@ -180,15 +180,13 @@ impl PairMemory {
         let (mine, theirs) = (ego.standstill, self.other.standstill);
         let perhaps = mine.perhaps.min(theirs.perhaps);
         let surely = mine.surely.min(theirs.surely);
-        let patiences = perhaps.checked_div(patience).unwrap_or(0);
-        let Some(turn) = patiences.checked_ilog2() else {
+        let Some((turn, begins)) = turn(perhaps, patience) else {
             return;
         };
-        let begins = patience.saturating_mul(1 << turn);
         if R::ends(perhaps, surely, begins, patience) {
             self.turn = Turn::Past;
         }
-        // No turn begins for two that have not surely rested: in a period without a call, there is no more to do.
+        // No turn begins for two that have not surely rested.
         if surely < begins {
             return;
         }
@@ -202,6 +200,36 @@ impl PairMemory {
         if surely == begins.saturating_add(R::grace(contract)) && counted && owner {
             self.turn = Turn::Ego;
         }
+    }
+
+    /// Notes so many periods without a call, and passes the turn on after each: nobody has surely rested in them, so that a
+    /// turn may end and none begins. The ego was like `ego` before, and has arrived `here`, the other `there`.
+    pub(super) fn miss<R: Rules>(
+        &mut self,
+        rule: Precedence,
+        right: Right,
+        (ego, here): (&Presence, Arrived),
+        there: Arrived,
+        periods: u16,
+    ) {
+        if periods == 0 {
+            return;
+        }
+        if self.turn == Turn::New {
+            self.turn = Turn::First;
+        }
+        let patience = right.patience(rule);
+        let (mine, theirs) = (ego.standstill, self.other.standstill);
+        let before = mine.perhaps.min(theirs.perhaps);
+        let ends = |more: u16| {
+            let perhaps = before.saturating_add(more);
+            turn(perhaps, patience).is_some_and(|(_, begins)| R::ends(perhaps, 0, begins, patience))
+        };
+        let wait = here != Arrived::Not && there != Arrived::Not;
+        if wait && (1..=periods).any(ends) {
+            self.turn = Turn::Past;
+        }
+        self.other.miss(there, periods);
     }
 
     /// Nothing is known any more of who rested how long: nobody's turn is left.
@@ -236,6 +264,13 @@ impl PairMemory {
             }
         }
     }
+}
+
+/// Number of the turn, from 0, of two who have perhaps rested for so many periods, and after how many it begins; none before
+/// the first.
+fn turn(perhaps: u16, patience: u16) -> Option<(u32, u16)> {
+    let turn = perhaps.checked_div(patience)?.checked_ilog2()?;
+    Some((turn, patience.saturating_mul(1 << turn)))
 }
 
 #[cfg(test)]

@@ -27,6 +27,7 @@ impl<R: Real> Reach<R> {
     /// At most as far and as fast as this after `time` more at `acceleration`, of either sign.
     ///
     /// Exact, but for a vehicle that comes to rest on the way: that one stops no later.
+    #[inline(always)]
     #[must_use]
     pub fn at_most(self, acceleration: R, time: R) -> Self {
         let speed = (self.speed + acceleration * time).max(R::of(0.0));
@@ -58,6 +59,7 @@ impl<R: Real> Reach<R> {
     }
 
     /// As fast as that after it has lost `loss` (m/s), but not below `cap`.
+    #[inline(always)]
     #[must_use]
     pub fn fading(self, cap: R, loss: R) -> Self {
         let speed = self.speed.min(cap.max(self.speed - loss));
@@ -66,6 +68,7 @@ impl<R: Real> Reach<R> {
 
     /// After `time` more at `acceleration` > 0 up to the speed `cap`, which is then kept;
     /// a vehicle that is faster already keeps its speed.
+    #[inline(always)]
     #[must_use]
     pub fn rushing(self, acceleration: R, cap: R, time: R) -> Self {
         let cap = cap.max(self.speed);
@@ -81,6 +84,7 @@ impl<R: Real> Reach<R> {
     }
 
     /// Where a vehicle that brakes at `braking` > 0 from here comes to rest.
+    #[inline(always)]
     #[must_use]
     pub fn rest(self, braking: R) -> R {
         self.distance + self.speed * self.speed / (braking + braking)
@@ -88,6 +92,7 @@ impl<R: Real> Reach<R> {
 
     /// The time (s) that it takes from here at `acceleration` > 0, up to the speed `cap` > 0, until the
     /// distance is `target`, and the speed then. No time if it is there already.
+    #[inline(always)]
     #[must_use]
     pub fn until(self, target: R, acceleration: R, cap: R) -> (R, R) {
         let left = (target - self.distance).max(R::of(0.0));
@@ -102,17 +107,17 @@ impl<R: Real> Reach<R> {
         (time, speed)
     }
 
-    /// [`Reach::until`] of a speed that may be below 0 ([`Reach::sinking`]): until it is 0, the vehicle stands.
+    /// For how long (s) a vehicle whose speed may be below 0 ([`Reach::sinking`]) stands at `acceleration`, until its speed is 0,
+    /// and what it does from then on.
     #[must_use]
-    pub fn until_from_rest(self, target: R, acceleration: R, cap: R) -> (R, R) {
+    pub fn setting_off(self, acceleration: R) -> (R, Self) {
         let zero = R::of(0.0);
         let stands = zero.max(-self.speed) / acceleration;
         let moving = Self {
             speed: self.speed.max(zero),
             ..self
         };
-        let (time, speed) = moving.until(target, acceleration, cap);
-        (stands + time, speed)
+        (stands, moving)
     }
 }
 

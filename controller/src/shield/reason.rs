@@ -2,10 +2,11 @@
 
 use super::contract::Contract;
 use super::hazard::{Passage, Who};
-use super::margin::{self, Going};
+use super::lane::safe_gap;
+use super::margin;
 use super::rules::Rules;
 use super::scene::Scene;
-use super::verified::passage_margin;
+use super::verified::{passing, rest};
 use crate::decision::Reason;
 use crate::junction::PathId;
 use crate::real::Real;
@@ -14,18 +15,18 @@ impl Scene<'_> {
     /// Why `command` is refused: what stands in the way of the plan that goes farthest.
     pub(super) fn reason<R: Rules>(&self, contract: &Contract, command: f32) -> Reason {
         let departure = R::departure(contract, self.ego.speed, self.inherited, command);
-        let mut needs = R::rest(contract, departure.braking, 0.0);
+        let mut needs = rest::<R>(contract, departure.braking, 0.0);
         let mut stop = Reason::Stop {
             other: 0,
             available: 0.0,
             needs,
         };
-        let going = Going::of(contract);
         for hazard in self.hazards.iter() {
             if R::stops_short(contract, hazard.rest, needs) >= 0.0 {
                 continue;
             }
-            let (clears, ego_speed) = going.clearing(departure.least, hazard.target);
+            let (clears, ego_speed, passes) =
+                passing::<R>(contract, hazard, (&departure, &self.going));
             let other = match hazard.who {
                 Who::Watched { number, .. } | Who::Unwatched(number) => number,
                 Who::Hidden(_) => 0,
@@ -35,8 +36,8 @@ impl Scene<'_> {
                 available: hazard.rest,
                 needs,
             };
-            if passage_margin::<R>(contract, hazard, clears, ego_speed) >= 0.0 {
-                needs = R::rest(contract, departure.most, clears);
+            if passes >= 0.0 {
+                needs = rest::<R>(contract, departure.most, clears);
                 continue;
             }
             if let Who::Hidden(path) = hazard.who {
@@ -53,7 +54,7 @@ impl Scene<'_> {
                     Reason::Entry {
                         other,
                         gap: gap - rush.distance,
-                        needs: R::safe_gap(contract, rush.speed, ego_speed),
+                        needs: safe_gap::<R>(contract, rush.speed, ego_speed),
                     }
                 }
                 Passage::Walks { distance, speed } => Reason::Arrival {
@@ -89,6 +90,7 @@ mod tests {
     use crate::shield::actuation::Inherited;
     use crate::shield::hazard::Hazard;
     use crate::shield::hazards::tests::just;
+    use crate::shield::margin::Going;
     use crate::shield::own::Own;
     use crate::shield::rules::Sound;
 
@@ -122,6 +124,7 @@ mod tests {
             hazards: &mut just(&[hazard]),
             inherited: &inherited,
             most: CONTRACT.ego.go,
+            going: Going::of(&CONTRACT),
         };
         let departure = Sound::departure(&CONTRACT, 6.0, &inherited, 0.0);
         let (clears, speed) = margin::clearing(&CONTRACT, departure.least, 15.0);

@@ -26,6 +26,7 @@ pub trait Rules {
     }
 
     /// Where the ego is at rest if it goes for `time` after `from` and then brakes: [`margin::rest`].
+    #[inline(always)]
     #[must_use]
     fn rest(contract: &Contract, from: Reach<f32>, time: f32) -> f32 {
         margin::rest(contract, from, time)
@@ -38,12 +39,14 @@ pub trait Rules {
     }
 
     /// How far an other gets: [`margin::rush`].
+    #[inline(always)]
     #[must_use]
     fn rush(contract: &Contract, speed: f32, time: f32) -> Reach<f32> {
         margin::rush(contract, speed, time)
     }
 
     /// The gap at which the ego may enter a lane: [`margin::safe_gap`].
+    #[inline(always)]
     #[must_use]
     fn safe_gap(contract: &Contract, speed: f32, ego_speed: f32) -> f32 {
         margin::safe_gap(contract, speed, ego_speed)

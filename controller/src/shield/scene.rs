@@ -10,7 +10,7 @@ use super::own::Own;
 use super::rules::Rules;
 use super::tracks::Tracks;
 use super::unwatched::Closed;
-use super::verified::{Verified, best, spare};
+use super::verified::{Verified, best, rest, spare};
 use crate::junction::Way;
 use crate::plan::Plan;
 
@@ -25,6 +25,8 @@ pub(super) struct Scene<'s> {
     pub(super) inherited: &'s Inherited<f32>,
     /// The hardest acceleration that may be commanded.
     pub(super) most: f32,
+    /// How the ego goes.
+    pub(super) going: Going<f32>,
 }
 
 impl<'s> Scene<'s> {
@@ -44,6 +46,7 @@ impl<'s> Scene<'s> {
             hazards,
             inherited,
             most,
+            going: Going::of(contract),
         }
     }
 
@@ -57,11 +60,8 @@ impl<'s> Scene<'s> {
         let departure = R::departure(contract, self.ego.speed, self.inherited, command);
         // A part of the slack is for what rounding has taken since the plan was verified.
         let rounding = 0.2 * contract.slack;
-        let going = Going::of(contract);
-        move |hazard| {
-            let motion = (&departure, &going);
-            R::keeps(spare::<R>(contract, hazard, motion, R::tail(plan)) + rounding)
-        }
+        let spare = spare::<R>(contract, (departure, self.going), R::tail(plan));
+        move |hazard| R::keeps(spare(hazard) + rounding)
     }
 
     /// Has the ego wait at its line, if the junction was told it. `goes`: the plan in force does not brake yet, and
@@ -72,7 +72,7 @@ impl<'s> Scene<'s> {
         };
         let brakes = allowed(&contract.ego, self.most, -contract.ego.braking);
         let departure = R::departure(contract, self.ego.speed, self.inherited, brakes);
-        let stop = R::rest(contract, departure.braking, 0.0) + contract.slack;
+        let stop = rest::<R>(contract, departure.braking, 0.0) + contract.slack;
         let line = path.line() - self.ego.s - contract.position_error;
         self.hazards.wait_at(line, stop, goes);
     }
@@ -80,7 +80,7 @@ impl<'s> Scene<'s> {
     /// The best plan after one period at `command`.
     pub(super) fn check<R: Rules>(&self, contract: &Contract, command: f32) -> Verified {
         let departure = R::departure(contract, self.ego.speed, self.inherited, command);
-        best::<R>(contract, self.hazards, &departure)
+        best::<R>(contract, self.hazards, (&departure, &self.going))
     }
 
     /// Whether an ego without a safe plan accelerates out of its zones instead of braking: it stands in zones, none

@@ -46,6 +46,17 @@ impl<const N: usize> Tracks<N> {
         self.watched.iter_mut()
     }
 
+    /// Number and path of everybody who is watched, or known without being watched.
+    #[cfg(test)]
+    pub(super) fn known(&self) -> impl Iterator<Item = (u16, PathId)> {
+        let watched = self.watched.iter().map(|other| (other.number, other.path));
+        watched.chain(
+            self.unwatched
+                .iter()
+                .map(|entry| (entry.number, entry.path)),
+        )
+    }
+
     /// Nobody with this number is there any more.
     pub(crate) fn forget(&mut self, number: u16) {
         let known = |other: &Other| other.number == number && !other.gone;
@@ -169,19 +180,19 @@ impl<const N: usize> Tracks<N> {
                 self.note_candidate::<R>(context, when, (track, candidate), findings);
             }
         }
-        // A candidate that is left out is excluded by what was seen, if anything was.
+        // A candidate that is left out is excluded by what was seen, if anything was. As a rule there is none.
         let (contract, way) = context;
         let placed = |candidate| door::track(way, contract, track, candidate).is_ok();
-        if newcomers && track.candidates().any(placed) {
-            let stays =
-                |other: &Other| other.number != number || other.seen || track.may_be_on(other.path);
-            // As a rule all do, and none need be moved.
-            if !self.watched.iter().all(stays) {
-                self.watched.retain(stays);
-            }
-            self.unwatched.retain(|entry| {
-                entry.number != number || entry.seen || track.may_be_on(entry.path)
-            });
+        let stays =
+            |other: &Other| other.number != number || other.seen || track.may_be_on(other.path);
+        let remains =
+            |entry: &Entry| entry.number != number || entry.seen || track.may_be_on(entry.path);
+        if newcomers
+            && !(self.watched.iter().all(stays) && self.unwatched.all(remains))
+            && track.candidates().any(placed)
+        {
+            self.watched.retain(stays);
+            self.unwatched.retain(remains);
         }
     }
 
@@ -384,9 +395,11 @@ fn newcomer<R: Rules>(
     let mut other = Other::at(number, path, 0.0, base, at);
     other.settled = settled;
     let mut hazards = Vec::new();
-    for (_, hazard) in hazard::of::<R>(contract, way, ego, &other) {
-        // Two paths have no more zones than that. `collect` would panic if they had.
-        let _ = hazards.push(hazard);
+    for (index, zone) in (0_u8..).zip(way.conflict(path)?.zones()) {
+        if let Some(hazard) = hazard::of::<R>((contract, way), (index, zone), ego, &other) {
+            // Two paths have no more zones than that. `collect` would panic if they had.
+            let _ = hazards.push(hazard);
+        }
     }
     Some(hazards)
 }

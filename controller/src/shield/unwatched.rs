@@ -83,6 +83,11 @@ impl Unwatched {
         }
     }
 
+    #[cfg(test)]
+    pub(super) fn iter(&self) -> impl Iterator<Item = &Entry> {
+        self.entries.iter()
+    }
+
     pub(super) fn iter_mut(&mut self) -> impl Iterator<Item = &mut Entry> {
         self.entries.iter_mut()
     }
@@ -157,6 +162,11 @@ impl Unwatched {
     pub(super) fn knows(&self, number: u16) -> bool {
         let mut all = self.entries.iter();
         all.any(|entry| entry.number == number && entry.from < FAR)
+    }
+
+    /// Whether `stays` is true for everybody.
+    pub(super) fn all(&self, stays: impl Fn(&Entry) -> bool) -> bool {
+        self.entries.iter().all(stays)
     }
 
     /// Forgets whoever `stays` is false for.

@@ -4,6 +4,7 @@ use super::contract::Contract;
 use super::hazard::{Hazard, Passage};
 use super::hazards::Hazards;
 use super::margin::{self, Departure, Going};
+use super::reach::Reach;
 use super::rules::Rules;
 use crate::junction::zone::FAR;
 use crate::plan::Plan;
@@ -26,22 +27,22 @@ pub(crate) struct Verified {
 /// first k are cleared and stop before all others, for every k.
 ///
 /// Cost: one clearing time for each hazard.
+#[inline(never)]
 pub(crate) fn best<R: Rules>(
     contract: &Contract,
     hazards: &Hazards,
-    departure: &Departure<f32>,
+    (departure, going): (&Departure<f32>, &Going<f32>),
 ) -> Verified {
-    let rest = R::rest(contract, departure.braking, 0.0);
+    let rest = rest::<R>(contract, departure.braking, 0.0);
     let mut best = Verified {
         plan: Plan { go: 0 },
         margin: R::stops_short(contract, hazards.nearest_rest(), rest),
         passes: -FAR - FAR,
     };
-    let going = Going::of(contract);
     let mut passed = FAR;
     for hazard in hazards.iter() {
-        let (clears, speed) = going.clearing(departure.least, hazard.target);
-        passed = Real::min(passed, passage_margin::<R>(contract, hazard, clears, speed));
+        let (clears, _, passes) = passing::<R>(contract, hazard, (departure, going));
+        passed = Real::min(passed, passes);
         // Whatever comes after it cannot mend a hazard that is not passed in time.
         if passed <= best.margin || clears > HORIZON {
             break;
@@ -64,30 +65,60 @@ pub(crate) fn best<R: Rules>(
     best
 }
 
-/// Metres to spare of a given plan, after one period at the command of `departure`, against one hazard: it is passed in
+/// Metres to spare of a given plan, after one period at the command of `departure`, against each hazard: it is passed in
 /// time, or the ego stops before it.
 pub(crate) fn spare<R: Rules>(
     contract: &Contract,
-    hazard: &Hazard,
-    (departure, going): (&Departure<f32>, &Going<f32>),
+    (departure, going): (Departure<f32>, Going<f32>),
     plan: Plan,
-) -> f32 {
+) -> impl Fn(&Hazard) -> f32 {
     let time = f32::from(plan.go) * contract.period;
-    let rest = if plan.go > 0 {
-        R::rest(contract, departure.most, time)
+    let from = if plan.go > 0 {
+        departure.most
     } else {
-        R::rest(contract, departure.braking, 0.0)
+        departure.braking
     };
+    let rest = rest::<R>(contract, from, time);
+    move |hazard| spare_of::<R>(contract, hazard, (&departure, &going), (plan, rest))
+}
+
+/// [`spare`] of a plan by which the ego comes to rest after `rest` metres.
+#[inline(never)] // Once in flash.
+fn spare_of<R: Rules>(
+    contract: &Contract,
+    hazard: &Hazard,
+    motion: (&Departure<f32>, &Going<f32>),
+    (plan, rest): (Plan, f32),
+) -> f32 {
     let stops = R::stops_short(contract, hazard.limit, rest);
-    let (clears, speed) = going.clearing(departure.least, hazard.target);
+    let (clears, _, passes) = passing::<R>(contract, hazard, motion);
     if clears <= HORIZON && margin::periods(contract, clears) <= plan.go {
-        Real::max(stops, passage_margin::<R>(contract, hazard, clears, speed))
+        Real::max(stops, passes)
     } else {
         stops
     }
 }
 
+/// [`Rules::rest`] outside of loops.
+#[inline(never)] // Once in flash.
+pub(crate) fn rest<R: Rules>(contract: &Contract, from: Reach<f32>, time: f32) -> f32 {
+    R::rest(contract, from, time)
+}
+
+/// When the ego has cleared a hazard (s from now), if it goes, how fast it then is (m/s), and metres to spare.
+#[inline(never)] // Once in flash.
+pub(crate) fn passing<R: Rules>(
+    contract: &Contract,
+    hazard: &Hazard,
+    (departure, going): (&Departure<f32>, &Going<f32>),
+) -> (f32, f32, f32) {
+    let (clears, speed) = going.clearing(departure.least, hazard.target);
+    let margin = passage_margin::<R>(contract, hazard, clears, speed);
+    (clears, speed, margin)
+}
+
 /// Metres to spare when the ego has cleared `hazard` at `clears` (s from now) with `ego_speed`.
+#[inline(always)]
 pub(crate) fn passage_margin<R: Rules>(
     contract: &Contract,
     hazard: &Hazard,
@@ -121,7 +152,6 @@ mod tests {
     use super::*;
     use crate::shield::hazard::Who;
     use crate::shield::hazards::tests::just;
-    use crate::shield::reach::Reach;
     use crate::shield::rules::Sound;
 
     const WORST: Contract = Contract::WORST_CASE;
@@ -157,7 +187,7 @@ mod tests {
     };
 
     fn best_of(all: &[Hazard]) -> Verified {
-        best::<Sound>(&WORST, &just(all), &DEPARTURE)
+        best::<Sound>(&WORST, &just(all), (&DEPARTURE, &Going::of(&WORST)))
     }
 
     #[track_caller]
@@ -207,12 +237,7 @@ mod tests {
     fn a_plan_has_to_spare_what_it_stops_short_by_or_passes_by() {
         let spare = |go, target| {
             let hazard = hazard(target, 5.0, FREE);
-            spare::<Sound>(
-                &WORST,
-                &hazard,
-                (&DEPARTURE, &Going::of(&WORST)),
-                Plan { go },
-            )
+            spare::<Sound>(&WORST, (DEPARTURE, Going::of(&WORST)), Plan { go })(&hazard)
         };
         near(spare(23, 20.0), 79.71);
         near(spare(22, 20.0), -46.67);

@@ -199,6 +199,18 @@ impl Standstill {
         let sure = rest == RestState::Surely && arrived == Arrived::Surely;
         self.surely = count(sure, self.surely);
     }
+
+    /// So many periods more, one at least, in each of which it perhaps rests.
+    fn miss(&mut self, arrived: Arrived, periods: u16) {
+        *self = Self {
+            perhaps: match arrived {
+                Arrived::Not => 0,
+                Arrived::Perhaps | Arrived::Surely => self.perhaps.saturating_add(periods),
+            },
+            surely: 0,
+            moved: 0,
+        };
+    }
 }
 
 /// What one shield remembers of how a vehicle came to its line.
@@ -260,6 +272,13 @@ impl Presence {
     pub(super) fn stay(&mut self, contract: &Contract, rest: RestState, arrived: Arrived) {
         let calls = calls_in_between(contract);
         self.standstill.note(rest, arrived, calls);
+    }
+
+    /// Notes so many periods without a call, of one that has `arrived`, or not.
+    pub(super) fn miss(&mut self, arrived: Arrived, periods: u16) {
+        if periods > 0 {
+            self.standstill.miss(arrived, periods);
+        }
     }
 
     /// Notes what is sensed within a period that has been noted already.

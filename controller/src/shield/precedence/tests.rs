@@ -4,7 +4,7 @@ mod stories;
 mod watcher;
 
 use super::super::rules::Sound;
-use super::super::waiting::{Arrival, Sighting};
+use super::super::waiting::{Arrival, Arrived, RestState, Sighting};
 use super::*;
 use crate::instant::Instant;
 use crate::junction::zone::Span;
@@ -23,7 +23,7 @@ fn arrival(after: Option<u64>, by: Option<u64>) -> Arrival {
         if let Some(at) = at {
             let sighting = Sighting {
                 s: Some(Span { from: s, to: s }),
-                rest: super::super::waiting::RestState::No,
+                rest: RestState::No,
             };
             presence.note(&contract, rule, LINE, sighting, Instant::from_millis(at));
         }
@@ -191,6 +191,58 @@ proptest! {
     #[test]
     fn never_both_have_precedence(story in story()) {
         prop_assert!(!both::<Sound>(&story, Fault::None));
+    }
+}
+
+fn arrived() -> impl Strategy<Value = Arrived> {
+    prop_oneof![
+        Just(Arrived::Not),
+        Just(Arrived::Perhaps),
+        Just(Arrived::Surely)
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(3000))]
+
+    #[test]
+    fn periods_without_a_call_count_as_if_each_was_noted(
+        patience in prop_oneof![Just(0_u16), 5_u16..40],
+        before in prop::collection::vec((0_usize..3, 0_usize..3), 0..60),
+        unknown in any::<bool>(),
+        (here, there) in (arrived(), arrived()),
+        periods in 0_u16..20,
+        right in 0_usize..3,
+    ) {
+        let contract = contract(patience, 5);
+        let rule = contract.precedence.unwrap();
+        let right = Right {
+            of_way: [RightOfWay::Ego, RightOfWay::Other, RightOfWay::Unsettled][right],
+            priority: [Priority::FirstCome, Priority::Unsigned, Priority::Signed][right],
+            in_turns: RightOfWay::Ego,
+        };
+        let rests = [RestState::No, RestState::Perhaps, RestState::Surely];
+        let (mut ego, mut pair) = (Presence::default(), PairMemory::default());
+        let note = |ego: &mut Presence, pair: &mut PairMemory, [mine, its]: [RestState; 2], [here, there]: [Arrived; 2]| {
+            ego.stay(&contract, mine, here);
+            pair.other.stay(&contract, its, there);
+            pair.pass::<Sound>(&contract, rule, right, ego);
+        };
+        if !unknown {
+            note(&mut ego, &mut pair, [RestState::No; 2], [Arrived::Not; 2]);
+        }
+        for (mine, its) in before {
+            note(&mut ego, &mut pair, [rests[mine], rests[its]], [Arrived::Surely; 2]);
+        }
+        let (mut missed, mut each, own) = (pair, pair, ego);
+        missed.miss::<Sound>(rule, right, (&own, here), there, periods);
+        for _ in 0..periods {
+            note(&mut ego, &mut each, [RestState::Perhaps; 2], [here, there]);
+        }
+        let mut own = own;
+        own.miss(here, periods);
+        prop_assert_eq!(missed, each);
+        prop_assert_eq!(own, ego);
     }
 }
 

@@ -1,6 +1,7 @@
 //! What is feared of others, in numbers, with sensors that err.
 
 use super::hazard::{Hazard, Who};
+use super::margin::Going;
 use super::unwatched::Closed;
 use super::*;
 
@@ -356,6 +357,7 @@ fn what_is_found_counts_if_it_is_as_near_as_what_the_plan_does_next() {
         hazards: &mut Hazards::new(),
         inherited: &inherited,
         most: 2.5,
+        going: Going::of(&WORST),
     };
     assert!(run.shield.is_nearer(&scene, 1.0, -3.0), "there is no plan");
     let plan = Plan { go: 3 };
@@ -391,6 +393,7 @@ fn the_line_is_as_near_as_it_may_be() {
         hazards: &mut hazards,
         inherited: &Inherited::all(&contract, [0.0; 2]),
         most: 2.5,
+        going: Going::of(&contract),
     };
     scene.wait_at_line::<Sound>(&contract, way, false);
     near(hazards.nearest_rest(), 40.0 - 20.0 - 0.3);
@@ -515,6 +518,7 @@ fn the_ego_leaves_its_zone_only_if_what_is_ahead_can_be_passed_or_stopped_before
             hazards: &mut hazards::tests::just(all),
             inherited: &Inherited::all(&WORST, [0.0; 2]),
             most: 3.0,
+            going: Going::of(&WORST),
         };
         scene.leaves::<Sound>(&WORST)
     };

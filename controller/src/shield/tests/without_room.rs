@@ -303,3 +303,42 @@ fn nobody_is_met_in_lanes_either() {
     in_lanes::<1>();
     in_lanes::<2>();
 }
+
+/// Of as many as there is room for, each on its path, one is watched or not, but never known twice, whatever is seen of it:
+/// `firmware/loops.txt` counts on it.
+fn known_once(seed: u64) {
+    let site = crowded();
+    let mut run = Run::new(&site, WORST);
+    let mut dice = Dice(seed);
+    let mut states: std::vec::Vec<State> = (0..8)
+        .map(|_| [dice.within(0.0, 70.0), dice.within(0.0, 12.0)])
+        .collect();
+    for _ in 0..40 {
+        let mut tracks = std::vec::Vec::new();
+        for (number, state) in (0_u16..).zip(&mut states) {
+            state[0] += 0.1 * state[1];
+            let seen = match dice.unit() {
+                unseen if unseen < 0.2 => continue,
+                jumps if jumps < 0.3 => [dice.within(-20.0, 200.0), state[1]],
+                _ => *state,
+            };
+            let speed = if dice.unit() < 0.1 { f32::NAN } else { seen[1] };
+            let path = 1 + (number % 3) as u8;
+            tracks.push(numbered(&site, number, path, [seen[0], speed]));
+        }
+        let own = ego(&site, [dice.within(20.0, 90.0), 5.0]);
+        run.observe(own, &tracks, 1.0);
+        let mut known: std::vec::Vec<_> = run.shield.tracks.known().collect();
+        known.sort_unstable();
+        let all = known.len();
+        known.dedup();
+        assert_eq!(known.len(), all, "{seed}: {known:?}");
+    }
+}
+
+#[test]
+fn who_keeps_number_and_path_is_known_once() {
+    for seed in 1..200 {
+        known_once(seed);
+    }
+}
