@@ -141,7 +141,7 @@ fn the_worst_moments_open_their_replay() {
     );
     let told = open_with(
         &browser,
-        page,
+        &OFF,
         &format!(
             "{TELL}
         const link = document.querySelector('#moments a');

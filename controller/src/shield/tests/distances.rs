@@ -417,6 +417,7 @@ fn one_that_creeps_over_its_line_rests_where_it_can() {
         hazards: &mut hazards,
         inherited: &inherited,
         most: 2.5,
+        going: margin::Going::of(&contract),
     };
     scene.wait_at_line::<Sound>(&contract, way, false);
     let brakes = margin::departure(&contract, own[1], &inherited, -3.0).braking;
@@ -441,6 +442,7 @@ fn a_remembered_plan_holds_with_a_fifth_of_the_slack_less() {
             hazards: &mut hazards,
             inherited: &inherited,
             most: 3.0,
+            going: margin::Going::of(&WORST),
         };
         let closed = Closed {
             number: 1,
