@@ -42,9 +42,16 @@ def main(kinds, file):
                     everything[driver, share] += runs
                     cells.append(cell(runs))
                     for seed, summary in zip(SEEDS, runs):
-                        case = {"junction": kind, "demand": demand, "share": share, "seed": seed}
+                        case = {
+                            "junction": kind,
+                            "demand": demand,
+                            "driver": driver,
+                            "share": share,
+                        }
                         if file:
-                            print(json.dumps({**case, **summary}), file=file, flush=True)
+                            print(
+                                json.dumps({**case, "seed": seed, **summary}), file=file, flush=True
+                            )
                 demanded = total(runs, "demanded")
                 print(f"| `{kind}` | {demand:.0f} | {demanded} | {' | '.join(cells)} |", flush=True)
     print(
