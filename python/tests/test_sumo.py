@@ -1,3 +1,4 @@
+import collections
 import json
 import math
 import os
@@ -15,7 +16,7 @@ pytest.importorskip("libsumo", reason="no SUMO (pip install 'cede[sumo]')")
 from cede.sumo import Bridge, Network, Settings
 from cede.sumo.__main__ import main
 from cede.sumo._bridge import Car, contract_named
-from cede.sumo._network import LATERAL, REACH
+from cede.sumo._network import LATERAL, REACH, Site
 from cede.sumo._persons import Person, Walk, nearest, zones_of
 
 ARMS = {"N": (0, 200), "S": (0, -200), "E": (200, 0), "W": (-200, 0)}
@@ -280,6 +281,36 @@ def test_turns_need_not_be_known(tmp_path):
     summary = run(net, driver="profile", intent="hidden", time=200.0, demand=150.0, seed=1)
     assert summary["collisions"] == 0
     assert summary["arrived"] > 10
+
+
+@pytest.mark.parametrize("kind", ["roundabout", "right_before_left"])
+def test_what_is_left_out_or_worked_out_once_changes_nothing(tmp_path, kind, monkeypatch):
+    """Who has left all zones is no track, and ways that are still one are placed once."""
+    net = roundabout(tmp_path) if kind == "roundabout" else netconvert(tmp_path, kind)
+
+    def summary():
+        return {**run(net, demand=250.0, share=0.5, seed=2), "us_per_decision": None}
+
+    quick = summary()
+    monkeypatch.setattr(Site, "shared", {})
+    monkeypatch.setattr(Site, "left", collections.defaultdict(dict))
+    assert summary() == quick
+
+
+def test_nobody_is_left_out_before_it_has_left(tmp_path):
+    (site,) = Network(netconvert(tmp_path, "unregulated")).sites
+    finite = 0
+    for movement in site.movements:
+        left = site.left[movement.path]
+        assert left[movement.outgoing] == math.inf
+        for other in site.movements:
+            zones = site.junction.conflict(movement.driven, other.path).zones
+            for stretch in other.stretches:
+                if left[stretch.lane] < math.inf:
+                    finite += 1
+                    place, _ = other.place(stretch.start + left[stretch.lane] * stretch.scale)
+                    assert all(theirs[1] < place for _, _, theirs in zones)
+    assert finite > 0
 
 
 def test_the_right_of_way_is_that_of_the_signs(tmp_path):

@@ -188,11 +188,11 @@ impl Stage {
         let (mut half, mut askew) = (straight.half, 0.0);
         for arc in arcs.iter().flatten() {
             let away = length(&(arc.to - arc.from));
-            // Corners are nearer than the sum of both halves; rounding is allowed for.
-            let more = 1.01 * away * (arc.half.0 + arc.half.1);
+            // The sine of the angle is less than the distance; rounding is allowed for.
+            let sine = 1.01 * away;
             half = (
-                Real::max(half.0, arc.half.0 + more),
-                Real::max(half.1, arc.half.1 + more),
+                Real::max(half.0, arc.half.0 + sine * arc.half.1),
+                Real::max(half.1, arc.half.1 + sine * arc.half.0),
             );
             askew = Real::max(askew, away);
         }

@@ -114,7 +114,10 @@ fn rectangle(width: f32, height: f32) -> Polygon {
 /// (Sutherland and Hodgman, 1974).
 #[inline(never)]
 fn cut(polygon: &mut Polygon, limit: &Limit, side: f32) {
-    let inside = |p| limit.radius - side * limit.at(p);
+    let inside = |p: &Point| limit.radius - side * limit.at(*p);
+    if polygon.iter().all(|p| inside(p) >= 0.0) {
+        return;
+    }
     let mut kept = Polygon::new();
     // A cut by a line adds at most one corner, and 4 + 8 fit in the capacity. If rounding made it more,
     // the polygon would stay as it is: larger, not smaller.
@@ -123,9 +126,9 @@ fn cut(polygon: &mut Polygon, limit: &Limit, side: f32) {
     let Some(&first) = polygon.first() else {
         return;
     };
-    let (mut p, mut at_p) = (first, inside(first));
+    let (mut p, mut at_p) = (first, inside(&first));
     for &q in polygon.iter().skip(1).chain([&first]) {
-        let at_q = inside(q);
+        let at_q = inside(&q);
         if at_p >= 0.0 {
             keep(p);
         }

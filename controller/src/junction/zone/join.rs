@@ -19,6 +19,13 @@ pub(super) fn covered(patches: &[Option<Patch>; MAX_ZONES], cell: &Cell) -> bool
 /// Adds a patch, or widens those that it touches: what hangs together ends up in one. Without room, the two that make the
 /// least of a larger one do, too.
 pub(super) fn insert(patches: &mut [Option<Patch>; MAX_ZONES], patch: Patch) {
+    // Most routes have one patch, and widen it.
+    if let [Some(only), None, None] = patches
+        && only.touches(&patch)
+    {
+        only.absorb(&patch);
+        return;
+    }
     let mut patch = hanging_together(patches, patch);
     // Each round empties a slot, or puts the patch into one.
     for _ in 0..MAX_ZONES {

@@ -57,6 +57,17 @@ pub struct Span {
 }
 
 impl Span {
+    /// Of a route, and beyond both of its ends.
+    const EVERYWHERE: Self = Self::around(FAR);
+
+    /// All that is at most `most` from 0.
+    const fn around(most: f32) -> Self {
+        Self {
+            from: -most,
+            to: most,
+        }
+    }
+
     /// The smallest interval that holds both.
     fn hull(self, other: Self) -> Self {
         let (from, to) = (self.including(other.from), self.including(other.to));
@@ -148,63 +159,60 @@ pub(crate) fn zones(ego: &Body<'_>, other: &Body<'_>) -> Zones {
 /// The zone of two vehicles on one route: a lane throughout, with a band that is the same for both. None if the route
 /// comes back to itself: then the one who is ahead along it may be in front of the other.
 pub(crate) fn zone_with_itself(body: &Body<'_>) -> Option<Zone> {
-    let mut patches = [None; MAX_ZONES];
+    let apart = body.footprint().length + INFLATION;
+    // Whoever is nearer to the other along the route than both are long touches it: no such pair of pieces is looked at.
+    let mut patches = [Some(Patch::lane(apart)), None, None];
     // The half in which the ego is ahead is the same, mirrored.
     near_pieces(body, body, &mut |a, b| {
         if a.straight().arc <= b.straight().arc {
             meet_stages(&mut patches, a, b);
         }
     });
-    let apart = body.footprint().length + INFLATION;
     let widest = patches.iter().flatten().fold(apart, |widest, patch| {
         Real::max(Real::max(widest, patch.lead.to), -patch.lead.from)
     });
     if widest > WIDEST * apart || patches.iter().flatten().any(|patch| patch.mixed) {
         return None;
     }
-    let everywhere = Span {
-        from: -FAR,
-        to: FAR,
-    };
     Some(Zone {
-        ego: everywhere,
-        other: everywhere,
-        lead: Span {
-            from: -widest,
-            to: widest,
-        },
+        ego: Span::EVERYWHERE,
+        other: Span::EVERYWHERE,
+        lead: Span::around(widest),
         kind: ConflictKind::Following,
     })
 }
 
 /// Adds what is occupied on one segment of each route, and in the turns at its ends.
 fn meet_stages(patches: &mut [Option<Patch>; MAX_ZONES], a: &Stage, b: &Stage) {
-    // Most pairs that are near each other never touch, and others are covered: then no turn is looked at for itself.
-    if limits(&a.whole(), &b.whole()).is_none() {
-        return;
-    }
-    add(patches, a.straight(), b.straight());
-    if !(a.turns_at_all() || b.turns_at_all())
-        || Cell::of_turns(a, b).is_some_and(|cell| covered(patches, &cell))
+    let turning = a.turns_at_all() || b.turns_at_all();
+    let along = Cell::of(a.straight(), b.straight());
+    let around = Cell::of_turns(a, b);
+    // Most pairs that are near each other are covered or never touch: then no motion is looked at for itself.
+    if (around.is_some() || !turning) && covered(patches, &along)
+        || turning && limits(&a.whole(), &b.whole()).is_none()
     {
         return;
     }
-    for turn in b.turns() {
-        add(patches, a.straight(), &turn);
+    meet_motions(patches, a.straight(), b.straight());
+    if !turning || around.is_some_and(|cell| covered(patches, &cell)) {
+        return;
     }
-    for turn in a.turns() {
+    b.turns().for_each(|turn| add(patches, a.straight(), &turn));
+    a.turns().for_each(|turn| {
         add(patches, &turn, b.straight());
-        for other in b.turns() {
-            add(patches, &turn, &other);
-        }
+        b.turns().for_each(|other| add(patches, &turn, &other));
+    });
+}
+
+/// Adds what is occupied in two motions, unless that is known to change nothing.
+fn add(patches: &mut [Option<Patch>; MAX_ZONES], a: &Motion, b: &Motion) {
+    if !covered(patches, &Cell::of(a, b)) {
+        meet_motions(patches, a, b);
     }
 }
 
-/// Adds what is occupied in two motions.
-fn add(patches: &mut [Option<Patch>; MAX_ZONES], a: &Motion, b: &Motion) {
-    if !covered(patches, &Cell::of(a, b))
-        && let Some(patch) = meet(a, b)
-    {
+fn meet_motions(patches: &mut [Option<Patch>; MAX_ZONES], a: &Motion, b: &Motion) {
+    if let Some(patch) = meet(a, b) {
         insert(patches, patch);
     }
 }

@@ -115,7 +115,7 @@ class Car:
     movement: Movement | None = None
     """The way that it takes, or has taken last."""
     followed: str = ""
-    """The lane on which its path was looked up last."""
+    """The lane on which its path is known: it leads to no other junction than that."""
     placed: float = -1.0
     """The time (s) of what follows."""
     on_path: bool = False
@@ -239,6 +239,7 @@ class Bridge:
         self.persons: dict[str, Person] = {}
         fastest = self.network.fastest
         self._contract = self.settings.contract or contract_named("sumo", fastest)
+        self._braking = self._contract.ego_braking
         self._random = random.Random(self.settings.seed)
         self._numbers = 0
         self._now = 0.0
@@ -361,16 +362,21 @@ class Bridge:
     # Who is where.
 
     def _drive_all(self) -> None:
+        driven: list[Car] = []
         for car in self.cars.values():
-            self._follow(car)
-        if self.settings.driver == "sumo":
+            # Of one that is not driven the path is known while it stays in its lane.
+            if car.chosen or car.lane != car.followed:
+                self._follow(car)
+                if car.chosen and car.on_path:
+                    driven.append(car)
+        if not driven or self.settings.driver == "sumo":
             return
-        driven = [car for car in self.cars.values() if car.chosen and car.on_path]
         there: dict[str, list[Car]] = {car.site.name: [] for car in driven}
+        using = self.network.using
         for car in self.cars.values():
-            for site in self.network.using.get(car.lane, ()):
-                if site.name in there:
-                    there[site.name].append(car)
+            for name in using.get(car.lane, ()):
+                if name in there:
+                    there[name].append(car)
         self._tracks: dict[tuple[str, str], Track | None] = {}
         persons = list(self.persons.values())
         sites = {car.site.name: car.site for car in driven if persons}
@@ -404,25 +410,32 @@ class Bridge:
     def _relevant(self, car: Car, there: list[Car]) -> list[Track]:
         """The others at the junction without those that others hold back.
 
-        Nobody overtakes in a lane: who is behind others on its way to the junction reaches no zone
-        before them, and is left out if they may take every path that it may take. In the vehicle's
-        own lane only the one just ahead is told; whoever is behind the vehicle is held back by it.
+        Who has left every zone with the vehicle's path is left out, too. Nobody overtakes in a
+        lane: who is behind others on its way to the junction reaches no zone before them, and is
+        left out if they may take every path that it may take. In the vehicle's own lane only the
+        one just ahead is told; whoever is behind the vehicle is held back by it.
         """
+        site, entering = car.site, self.network.entering
+        left = site.left[car.movement.path]
         lanes: dict[str, list[Car]] = {}
-        relevant = []
+        relevant, held = [], set()
         for other in there:
+            lane = other.lane
             if other is car:
                 continue
-            if car.site is not self.network.entering.get(other.lane):
-                relevant.append(other)
-            elif other.lane != car.lane:
-                lanes.setdefault(other.lane, []).append(other)
-        ahead = [o for o in there if o.lane == car.lane and o.position > car.position]
-        if ahead and car.site is self.network.entering.get(car.lane):
-            relevant.append(min(ahead, key=lambda other: other.position))
-        tracks = [self._track(car.site, other) for other in relevant]
+            if site is not entering.get(lane):
+                if self._stands_in_entry(other, site):
+                    held.add(other.movement.incoming)
+                if other.position < left.get(lane, math.inf):
+                    relevant.append(other)
+            elif lane != car.lane:
+                lanes.setdefault(lane, []).append(other)
+        if site is entering.get(car.lane):
+            ahead = [o for o in there if o.lane == car.lane and o.position > car.position]
+            if ahead:
+                relevant.append(min(ahead, key=lambda other: other.position))
+        tracks = [self._track(site, other) for other in relevant]
         known = [track for track in tracks if track is not None]
-        held = {o.movement.incoming for o in relevant if _stands_in_entry(o, car.site)}
         queues = [self._foremost(car, q) for lane, q in lanes.items() if lane not in held]
         return known + [track for queue in queues for track in queue]
 
@@ -450,6 +463,14 @@ class Bridge:
             stands = other.speed < STANDING
         return foremost
 
+    def _stands_in_entry(self, car: Car, site: Site) -> bool:
+        """Whether a vehicle stands in the junction with its rear still in its lane."""
+        if car.site is not site or car.speed >= STANDING:
+            return False
+        self._place(car)
+        inside = car.movement.stretches[1].start
+        return car.on_path and car.front - car.length < inside <= car.front
+
     def _track(self, site: Site, car: Car) -> Track | None:
         """The vehicle as others see it at this step; `None` if it is on no path."""
         key = (site.name, car.name)
@@ -463,15 +484,11 @@ class Bridge:
         places = site.on_lane[car.lane]
         if len(places) > 1 and car.site is site:
             places = self._expected(car, places) or places
-        candidates, rate = [], 1.0
-        for movement, stretch in places[:MOST_CANDIDATES]:
-            if movement is car.movement:
-                front, s, rate = car.front, car.s, car.rate
-            else:
-                front = _front(car, stretch)
-                s, rate = movement.place(front)
-            if front >= 0.0 and s < movement.length:
-                candidates.append((movement.driven if car.shield else movement.path, s))
+        places = places[:MOST_CANDIDATES]
+        if car.position < site.shared.get(car.lane, 0.0):
+            candidates, rate = _on_all(car, places)
+        else:
+            candidates, rate = _on_each(car, places)
         if not candidates:
             return None
         (path, s), *others = candidates
@@ -488,15 +505,9 @@ class Bridge:
         return places if turn is None else [p for p in places if p[0].direction == turn]
 
     def _follow(self, car: Car) -> None:
-        """Bring a vehicle's own path up to date, and its place on it.
-
-        Of one that is not driven the path is known while it stays in a lane that leads to no other
-        junction, and its place is asked for where it matters.
-        """
+        """Bring a vehicle's own path up to date, and its place on it."""
         ahead = self.network.entering.get(car.lane)
-        if not car.chosen and car.lane == car.followed and ahead in (None, car.site):
-            return
-        car.followed = car.lane
+        car.followed = car.lane if ahead is None or ahead is car.site else ""
         if car.movement is not None:
             self._place(car)
             if car.on_path and (ahead in (None, car.site) or car.s < car.movement.clear):
@@ -521,9 +532,9 @@ class Bridge:
     def _put(self, car: Car, movement: Movement, stretch: Stretch) -> bool:
         """Put a vehicle where it is on a movement; whether that is on its path."""
         car.placed = self._now
-        car.front = _front(car, stretch)
-        car.s, car.rate = movement.place(car.front)
-        return car.front >= 0.0 and car.s < movement.length - 1.0
+        car.front = front = _front(car, stretch)
+        car.s, car.rate = movement.place(front)
+        return front >= 0.0 and car.s < movement.length - 1.0
 
     def _way(self, car: Car, site: Site) -> tuple[Movement, Stretch] | tuple[None, None]:
         """The movement that the vehicle's route takes from its lane."""
@@ -615,21 +626,20 @@ class Bridge:
             short = movement.line - car.s
             car.stopped = car.speed < STANDING and short < AT_LINE
             wanted = min(wanted, _stopping(car.speed, short - 0.2, braking))
-        stop = self._stop(car)
         if self._waits(car) or self._lets_pass(car):
-            wanted = min(wanted, stop)
+            wanted = min(wanted, self._stop(car))
         leader = self.sumo.vehicle.getLeader(car.name, 50.0)
         other = self.cars.get(leader[0]) if leader else None
         # SUMO also names those who are about to merge: they are the shield's matter.
         if other is None or other.lane not in movement.on:
             return wanted
         if _blocks(car, other, leader[1]):
-            wanted = min(wanted, stop)
+            wanted = min(wanted, self._stop(car))
         return min(wanted, self._behind(car, other, leader[1]))
 
     def _stop(self, car: Car) -> float:
         """The acceleration (m/s²) that stops at the line, as late as the shield lets it."""
-        return _stopping(car.speed, car.movement.line - car.s, LATE * self._contract.ego_braking)
+        return _stopping(car.speed, car.movement.line - car.s, LATE * self._braking)
 
     def _waits(self, car: Car) -> bool:
         """Whether its plan has too little to spare in the bend, if it goes, and it can still stop.
@@ -640,7 +650,7 @@ class Bridge:
         if not car.tight or movement.direction == "straight" or car.s > movement.line:
             return False
         room = movement.line + NOSE - car.s
-        return car.speed**2 < 2 * room * self._contract.ego_braking
+        return car.speed**2 < 2 * room * self._braking
 
     def _lets_pass(self, car: Car) -> bool:
         """Whether it hardly moves yet, and one of SUMO's drivers has set off across its way.
@@ -664,10 +674,10 @@ class Bridge:
     @staticmethod
     def _allowed(car: Car) -> float:
         """The acceleration (m/s²) that limits and bends allow, there and a little ahead."""
-        allowed, speed = car.movement.allowed, car.speed * car.rate
-        ahead = car.front + car.speed * SMOOTH
-        slowest = min(car.movement.at(allowed, front) for front in (car.front, ahead))
-        return (slowest - speed) / SMOOTH
+        movement = car.movement
+        here = movement.at(movement.allowed, car.front)
+        ahead = movement.at(movement.allowed, car.front + car.speed * SMOOTH)
+        return (min(here, ahead) - car.speed * car.rate) / SMOOTH
 
     def _behind(self, car: Car, leader: Car, gap: float) -> float:
         """The intelligent driver model behind a leader."""
@@ -680,11 +690,30 @@ class Bridge:
         )
 
 
-def _stands_in_entry(car: Car, site: Site) -> bool:
-    """Whether a vehicle stands in the junction with its rear still in its lane."""
-    if car.site is not site or not car.on_path or car.speed >= STANDING:
-        return False
-    return car.front - car.length < car.movement.stretches[1].start <= car.front
+def _on_all(car: Car, places: list[Place]) -> tuple[list[tuple[int, float]], float]:
+    """Paths and arc lengths (m) of a vehicle where its ways are still one, and its rate on them."""
+    movement, stretch = places[0]
+    if car.movement is not None and car.movement.incoming == car.lane:
+        s, rate = car.s, car.rate
+    else:
+        s, rate = movement.place(_front(car, stretch))
+    if car.shield is not None:
+        return [(movement.driven, s) for movement, _ in places], rate
+    return [(movement.path, s) for movement, _ in places], rate
+
+
+def _on_each(car: Car, places: list[Place]) -> tuple[list[tuple[int, float]], float]:
+    """Paths and arc lengths (m) of a vehicle on each of its ways, and its rate on the last one."""
+    candidates, rate = [], 1.0
+    for movement, stretch in places:
+        if movement is car.movement:
+            front, s, rate = car.front, car.s, car.rate
+        else:
+            front = _front(car, stretch)
+            s, rate = movement.place(front)
+        if front >= 0.0 and s < movement.length:
+            candidates.append((movement.driven if car.shield else movement.path, s))
+    return candidates, rate
 
 
 def _in_order(car: Car, other: Car) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import bisect
 import math
 import os
 from collections import Counter
@@ -62,6 +63,9 @@ REACH = 12.0
 
 TOLERANCE = 0.1
 """Metres by which a vehicle may be beside its path."""
+
+MARGIN = 0.5
+"""Metres beyond a zone from which a vehicle counts as out of it."""
 
 _GRID = 0.25
 """Metres between two entries of a movement's tables."""
@@ -187,6 +191,38 @@ class Site:
     """The movements that use a lane."""
     crossings: list[Crossing] = field(default_factory=list)
 
+    @cached_property
+    def shared(self) -> dict[str, float]:
+        """The place (m) on each lane up to which all of its movements are one way."""
+        shared: dict[str, float] = {}
+        for movement in self.movements:
+            before, inside = movement.stretches[:2]
+            shared[before.lane] = (inside.start - before.start) / before.scale - 2 * _GRID
+        # A lane that leads back to the junction also belongs to the ways that end on it.
+        ends = {movement.outgoing for movement in self.movements}
+        return {lane: place for lane, place in shared.items() if lane not in ends}
+
+    @cached_property
+    def left(self) -> dict[int, dict[str, float]]:
+        """For each path, the place (m) on each lane from which nobody is in a zone with it.
+
+        Nothing is known of a lane that is not named.
+        """
+        return {movement.path: self._left(movement) for movement in self.movements}
+
+    def _left(self, movement: Movement) -> dict[str, float]:
+        left: dict[str, float] = {}
+        for other in self.movements:
+            zones = self.junction.conflict(movement.driven, other.path).zones
+            arc = max((theirs[1] for _, _, theirs in zones), default=-math.inf)
+            # Rounded up to an entry of the table; beyond its end nothing is known.
+            i = bisect.bisect_right(other.arc, arc + MARGIN)
+            front = i * _GRID if i < len(other.arc) else math.inf
+            for stretch in other.stretches:
+                place = (front - stretch.start) / stretch.scale
+                left[stretch.lane] = max(left.get(stretch.lane, -math.inf), place)
+        return left
+
 
 class Network:
     """The driven junctions of a `.net.xml` file.
@@ -224,12 +260,12 @@ class Network:
         self.fastest = max(map(max, allowed)) + EXCESS
         """Speed (m/s) that nobody exceeds at these junctions."""
         self.entering: dict[str, Site] = {}
-        self.using: dict[str, list[Site]] = {}
+        self.using: dict[str, list[str]] = {}
         for site in self.sites:
             for movement in site.movements:
                 self.entering[movement.incoming] = site
             for lane in site.on_lane:
-                self.using.setdefault(lane, []).append(site)
+                self.using.setdefault(lane, []).append(site.name)
 
     def _site(self, node: Any) -> Site | None:
         """The junction at a node; `None` where nobody meets anybody."""
