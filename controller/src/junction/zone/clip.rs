@@ -8,6 +8,9 @@ use crate::geometry::{Point, Vector};
 use crate::real::Real;
 use heapless::Vec;
 
+/// What grows by less than this along an axis (m for each m) is taken to say nothing of where it ends.
+const LEAST_SLOPE: f32 = 0.1;
+
 /// A polygon in the (s, t) plane, both counted from the motions' starts.
 type Polygon = Vec<Point, 12>;
 
@@ -50,6 +53,15 @@ pub(super) fn limits(a: &Motion, b: &Motion) -> Option<[Limit; 4]> {
     Some(limits)
 }
 
+/// A lower bound of the first one's arc length minus the second one's where the two touch; none, if they never do.
+///
+/// With what [`meet`] allows for rounding: no polygon's least lead is lower by more than rounding.
+pub(super) fn least_lead(a: &Motion, b: &Motion) -> Option<f32> {
+    let [.., one, other] = limits(a, b)?;
+    let least = Real::max(one.least_lead(a.length), other.least_lead(a.length));
+    Some(a.arc - b.arc + Real::max(least, -b.length) - INFLATION)
+}
+
 /// Whether nothing of the two can touch, `between` their starts.
 fn far_apart(a: &Motion, b: &Motion, between: Vector) -> bool {
     let reach = a.length + b.length + a.half.0 + a.half.1 + b.half.0 + b.half.1;
@@ -73,6 +85,17 @@ impl Limit {
     /// Whether the rectangles are apart wherever its value is in `range`.
     fn excludes(&self, range: Span) -> bool {
         range.from > self.radius || range.to < -self.radius
+    }
+
+    /// A lower bound of s − t where its value is at least −radius and s is in [0, `width`].
+    fn least_lead(&self, width: f32) -> f32 {
+        // t ≤ (offset + radius + along s) / back
+        let back = -self.other_along;
+        if back < LEAST_SLOPE {
+            return -FAR;
+        }
+        let slope = 1.0 - self.along / back;
+        Real::min(0.0, slope * width) - (self.offset + self.radius) / back
     }
 
     /// Its values over the rectangle from (0, 0) to (`width`, `height`).
@@ -201,6 +224,7 @@ fn placed(interval: Span, motion: &Motion) -> Span {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     /// A vehicle of 5 m × 2 m from `start` on, in direction `degrees`.
     fn motion(start: (f32, f32), degrees: f32, length: f32) -> Motion {
@@ -421,5 +445,42 @@ mod tests {
         assert_eq!(apart(|a, _| a.first = true), (false, false));
         assert_eq!(apart(|_, b| b.last = true), (false, false));
         assert_eq!(apart(|a, b| (a.last, b.first) = (true, true)), (true, true));
+    }
+
+    proptest! {
+        #[test]
+        fn nobody_is_farther_behind_than_the_bound(
+            x in -12.0_f32..12.0,
+            y in -4.0_f32..4.0,
+            degrees in -180.0_f32..180.0,
+            slanted in -10.0_f32..10.0,
+            lengths in (0.5_f32..9.0, 0.5_f32..9.0),
+        ) {
+            let a = Motion { arc: 40.0, ..motion((0.0, 0.0), slanted, lengths.0) };
+            let a = Motion { velocity: Vector::new(1.0, 0.0), ..a };
+            let b = motion((x, y), degrees, lengths.1);
+            if let Some(patch) = meet(&a, &b) {
+                let least = least_lead(&a, &b).unwrap();
+                prop_assert!(least <= patch.lead.from + 1e-4, "{least}, {:?}", patch.lead);
+            }
+        }
+    }
+
+    #[test]
+    fn the_bound_is_met_within_millimetres_where_one_follows_the_other() {
+        let a = motion((0.0, 0.0), 0.0, 6.0);
+        for (x, degrees) in [(3.0, 0.0), (4.0, 0.0), (3.0, -4.0)] {
+            let b = Motion {
+                arc: 103.0,
+                ..motion((x, 0.0), degrees, 6.0)
+            };
+            let (least, patch) = (least_lead(&a, &b).unwrap(), meet(&a, &b).unwrap());
+            assert!(
+                (least - patch.lead.from).abs() < 2e-3,
+                "{least}, {:?}",
+                patch.lead
+            );
+        }
+        assert_eq!(least_lead(&a, &motion((0.0, 2.1), 0.0, 6.0)), None);
     }
 }

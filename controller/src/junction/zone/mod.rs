@@ -12,6 +12,7 @@
 //! Nothing is sampled, so nothing is missed between samples. Footprints are inflated on every side by
 //! [`INFLATION`] for rounding and by the junction's tolerance.
 
+mod band;
 mod body;
 mod cell;
 mod clip;
@@ -23,6 +24,7 @@ mod patch;
 
 use crate::junction::kind::ConflictKind;
 use crate::real::Real;
+use band::Band;
 pub(crate) use body::{Body, sharp_kink};
 use body::{Motion, Stage};
 use cell::Cell;
@@ -160,24 +162,20 @@ pub(crate) fn zones(ego: &Body<'_>, other: &Body<'_>) -> Zones {
 /// comes back to itself: then the one who is ahead along it may be in front of the other.
 pub(crate) fn zone_with_itself(body: &Body<'_>) -> Option<Zone> {
     let apart = body.footprint().length + INFLATION;
-    // Whoever is nearer to the other along the route than both are long touches it: no such pair of pieces is looked at.
-    let mut patches = [Some(Patch::lane(apart)), None, None];
+    let mut band = Band::new(apart);
     // The half in which the ego is ahead is the same, mirrored.
-    near_pieces(body, body, &mut |a, b| {
-        if a.straight().arc <= b.straight().arc {
-            meet_stages(&mut patches, a, b);
+    near_pieces(body, body, &mut |behind, ahead| {
+        if behind.straight().arc <= ahead.straight().arc {
+            band.widen_by_stages(behind, ahead);
         }
     });
-    let widest = patches.iter().flatten().fold(apart, |widest, patch| {
-        Real::max(Real::max(widest, patch.lead.to), -patch.lead.from)
-    });
-    if widest > WIDEST * apart || patches.iter().flatten().any(|patch| patch.mixed) {
+    if band.widest > WIDEST * apart || band.head_on {
         return None;
     }
     Some(Zone {
         ego: Span::EVERYWHERE,
         other: Span::EVERYWHERE,
-        lead: Span::around(widest),
+        lead: Span::around(band.widest),
         kind: ConflictKind::Following,
     })
 }

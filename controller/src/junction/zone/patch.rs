@@ -27,19 +27,6 @@ pub(super) struct Patch {
 }
 
 impl Patch {
-    /// Of two vehicles on one route that are at most `apart` metres from each other along it.
-    pub(super) const fn lane(apart: f32) -> Self {
-        Self {
-            ego: Span::EVERYWHERE,
-            other: Span::EVERYWHERE,
-            lead: Span::around(apart),
-            parallel: Some([Span::EVERYWHERE; 2]),
-            starts: false,
-            ends: false,
-            mixed: false,
-        }
-    }
-
     /// Where they meet head-on is a zone of its own, also if it hangs together with a lane: there, who leads is not who is
     /// ahead.
     pub(super) fn touches(&self, other: &Self) -> bool {
