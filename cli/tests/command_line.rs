@@ -199,7 +199,7 @@ fn json_is_one_value_on_standard_output() {
         "verify shield --data made {site} --contract worst-case"
     ));
     assert_eq!(shield["rows"][0]["contract"], "as given");
-    let campaign = json("verify campaign --steps 1");
+    let campaign = json("verify campaign --scenarios 1");
     assert_eq!(campaign["setups"].as_array().unwrap().len(), 15);
 }
 
@@ -234,7 +234,7 @@ fn the_shares_of_a_campaign_add_up_to_the_whole() {
 #[test]
 fn reproduce_says_how_far_it_is_without_a_terminal() {
     let folder = tempfile::tempdir().unwrap();
-    let arguments = "reproduce --data synthetic --encounters 60 --rows bc --seeds 2 --set bc.updates=20 --set bc.width=16";
+    let arguments = "reproduce --data synthetic --encounters 24 --rows bc --seeds 2 --set bc.updates=20 --set bc.width=16";
     let spoken = cede_in(folder.path(), arguments).success();
     let told = stderr(&spoken);
     for said in ["1 of 2 trainings: bc-", "2 of 2 trainings: bc-"] {

@@ -64,7 +64,7 @@ impl<const N: usize> Tracks<N> {
             self.hidden.lose();
         }
         self.watched.retain(|other| other.number != number);
-        self.unwatched.retain(|entry| entry.number != number);
+        self.unwatched.forget(number);
         self.walkers.forget(number);
     }
 
@@ -128,7 +128,8 @@ impl<const N: usize> Tracks<N> {
             other.news = News::None;
             other.fresh = false;
         }
-        self.unwatched.begin();
+        let there = |number| seen.tracks.iter().any(|track| track.number == number);
+        self.unwatched.begin(way, ego.least, there);
         self.hidden.begin();
         self.coast::<R>(contract, now);
         // Who is known comes first, so that a newcomer finds as much room as there is.

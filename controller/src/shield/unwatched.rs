@@ -8,8 +8,11 @@ use crate::junction::{Class, PathId, RouteConflict, Way};
 use crate::real::Real;
 use heapless::Vec;
 
-/// So many of them are remembered while they are not seen.
+/// So many of them are remembered with their bounds while they are not seen.
 const ROOM: usize = 16;
+
+/// Of so many more, their numbers.
+const MORE_ROOM: usize = 24;
 
 /// Zones that the ego must not enter, because somebody who is not watched may be there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,8 +74,12 @@ pub(super) fn take<T, const N: usize>(all: &mut Vec<T, N>, place: usize) -> Opti
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Unwatched {
     entries: Vec<Entry, ROOM>,
-    /// The first zones of those whom there is no room to remember either.
+    /// The first zones of those whom there is no room to remember with their bounds.
     beyond: Option<Closed>,
+    /// Their numbers.
+    numbers: Vec<u16, MORE_ROOM>,
+    /// There were more, of whom not even the numbers are known.
+    nameless: bool,
 }
 
 impl Unwatched {
@@ -80,6 +87,8 @@ impl Unwatched {
         Self {
             entries: Vec::new(),
             beyond: None,
+            numbers: Vec::new(),
+            nameless: false,
         }
     }
 
@@ -97,10 +106,25 @@ impl Unwatched {
         self.beyond
     }
 
-    /// A new observation begins: nobody has been seen in it yet.
-    pub(super) fn begin(&mut self) {
+    /// A new observation begins, with tracks of the numbers for which `seen` is true, and an ego at `ego` (m). Nobody has
+    /// been noted yet.
+    pub(super) fn begin(&mut self, way: Way<'_>, ego: f32, seen: impl Fn(u16) -> bool) {
         self.entries.iter_mut().for_each(|entry| entry.seen = false);
-        self.beyond = None;
+        self.numbers.retain(|&number| !seen(number));
+        if self.numbers.is_empty() && !self.nameless {
+            self.beyond = None;
+        }
+        // As long as one of them is missing, what is closed stays so; past it, whatever comes next.
+        self.beyond = self.beyond.and_then(|Closed { number, from }| {
+            let next = |conflict| first_zone_from(conflict, ego, from);
+            let ahead = way.conflicts().filter_map(|(_, conflict)| next(conflict));
+            let from = ahead.reduce(Real::min)?;
+            Some(Closed { number, from })
+        });
+        if self.beyond.is_none() {
+            self.numbers.clear();
+            self.nameless = false;
+        }
     }
 
     /// One is seen whose first zone begins at `from` (m).
@@ -137,6 +161,9 @@ impl Unwatched {
         }
         if self.entries.push(entry).is_err() && from < FAR {
             self.beyond = sooner(self.beyond, Closed { number, from });
+            if placed && !self.numbers.contains(&number) {
+                self.nameless |= self.numbers.push(number).is_err();
+            }
         }
     }
 
@@ -162,6 +189,13 @@ impl Unwatched {
     pub(super) fn knows(&self, number: u16) -> bool {
         let mut all = self.entries.iter();
         all.any(|entry| entry.number == number && entry.from < FAR)
+            || self.numbers.contains(&number)
+    }
+
+    /// Nobody with this number is there.
+    pub(super) fn forget(&mut self, number: u16) {
+        self.entries.retain(|entry| entry.number != number);
+        self.numbers.retain(|&it| it != number);
     }
 
     /// Whether `stays` is true for everybody.
@@ -204,7 +238,12 @@ pub(super) fn sooner(first: Option<Closed>, other: Closed) -> Option<Closed> {
 
 /// Where (m) the ego, at `ego` (m), enters the first zone that it has not passed.
 pub(super) fn first_zone(conflict: &RouteConflict, ego: f32) -> Option<f32> {
-    let ahead = |zone: &&Zone| ego < zone.ego.to;
+    first_zone_from(conflict, ego, f32::NEG_INFINITY)
+}
+
+/// The same of those that begin at `from` (m) or later.
+fn first_zone_from(conflict: &RouteConflict, ego: f32, from: f32) -> Option<f32> {
+    let ahead = |zone: &&Zone| ego < zone.ego.to && from <= zone.ego.from;
     conflict
         .zones()
         .filter(ahead)
@@ -253,10 +292,11 @@ mod tests {
 
     #[test]
     fn of_those_who_are_seen_twice_the_nearer_counts_and_of_those_seen_again_the_last() {
+        let site = site();
         let mut unwatched = Unwatched::new();
         let mut from = |from, begin: bool| {
             if begin {
-                unwatched.begin();
+                unwatched.begin(site.way(PathId::new(0)).unwrap(), 0.0, |_| true);
             }
             unwatched.close(7, PATH, Place::OnFoot, from);
             assert_eq!(unwatched.entries.len(), 1);
@@ -283,7 +323,7 @@ mod tests {
         unwatched.placed(7, PATH).unwrap().holds = true;
         assert!(unwatched.open(7, PATH) && !unwatched.open(8, PATH));
         assert_eq!(unwatched.entries.len(), 2);
-        unwatched.begin();
+        unwatched.begin(site().way(PathId::new(0)).unwrap(), 0.0, |_| true);
         assert!(!unwatched.open(7, PATH));
         assert_eq!(unwatched.entries.len(), 1);
     }
@@ -309,8 +349,68 @@ mod tests {
         assert_eq!(close(25, 20.0), (16, Some((25, 20.0))));
         assert_eq!(close(26, FAR), (16, Some((25, 20.0))));
         assert!(unwatched.placed(20, PATH).is_none() && unwatched.placed(22, PATH).is_some());
-        unwatched.begin();
+        unwatched.begin(site().way(PathId::new(0)).unwrap(), 0.0, |_| true);
         assert_eq!(unwatched.beyond(), None);
+    }
+
+    #[test]
+    fn who_is_beyond_the_room_stays_while_it_is_missing_and_until_the_ego_is_past() {
+        let site = site();
+        let way = site.way(PathId::new(0)).unwrap();
+        let [near, far] = [1, 2].map(|path| zone(way, path));
+        let crowd = |more: &[(u16, f32)]| {
+            let mut unwatched = Unwatched::new();
+            (100..116).for_each(|number| unwatched.close(number, PATH, Place::OnFoot, far[0]));
+            for &(number, from) in more {
+                unwatched.close(number, PATH, Place::OnFoot, from);
+            }
+            unwatched
+        };
+        let begun = |mut unwatched: Unwatched, ego, seen: fn(u16) -> bool| {
+            unwatched.begin(way, ego, seen);
+            unwatched.beyond().map(|it| (it.number, it.from))
+        };
+        let two = crowd(&[(20, near[0]), (21, far[0])]);
+        // Either of them counts where the nearer one was.
+        assert_eq!(begun(two.clone(), 0.0, |_| false), Some((20, near[0])));
+        assert_eq!(begun(two.clone(), 0.0, |it| it != 21), Some((20, near[0])));
+        assert_eq!(begun(two.clone(), 0.0, |_| true), None);
+        // The ego passes the one zone, then the other.
+        assert_eq!(
+            begun(two.clone(), near[1] - 0.1, |_| false),
+            Some((20, near[0]))
+        );
+        assert_eq!(begun(two.clone(), near[1], |_| false), Some((20, far[0])));
+        assert_eq!(begun(two.clone(), far[1], |_| false), None);
+        // Known not to be there.
+        let mut forgotten = two.clone();
+        assert!(forgotten.knows(21));
+        forgotten.forget(21);
+        assert!(!forgotten.knows(21));
+        assert_eq!(begun(forgotten.clone(), 0.0, |it| it == 20), None);
+        assert_eq!(begun(forgotten, 0.0, |_| false), Some((20, near[0])));
+        // One whose place is not known was perhaps never there.
+        let mut unplaced = crowd(&[]);
+        unplaced.close(22, PATH, Place::Unknown, near[0]);
+        assert_eq!(begun(unplaced, 0.0, |_| false), None);
+    }
+
+    #[test]
+    fn beyond_the_room_for_numbers_all_count_until_the_ego_is_past() {
+        let site = site();
+        let way = site.way(PathId::new(0)).unwrap();
+        let [near, far] = [1, 2].map(|path| zone(way, path));
+        let mut unwatched = Unwatched::new();
+        (0..40).for_each(|number| unwatched.close(number, PATH, Place::OnFoot, near[0]));
+        assert!(!unwatched.nameless);
+        let mut seen = unwatched.clone();
+        seen.begin(way, 0.0, |_| true);
+        assert_eq!(seen.beyond(), None);
+        unwatched.close(40, PATH, Place::OnFoot, near[0]);
+        unwatched.begin(way, 0.0, |_| true);
+        assert_eq!(unwatched.beyond().map(|it| it.from), Some(near[0]));
+        unwatched.begin(way, far[1], |_| true);
+        assert_eq!((unwatched.beyond(), unwatched.nameless), (None, false));
     }
 
     /// The ego's road, one that crosses it, and one that does so farther on.
@@ -369,11 +469,11 @@ mod tests {
         assert_eq!(unwatched.end(way, 0.0), closed(2, 4.0));
         assert_eq!(froms(&mut unwatched), [Some(5.0), Some(FAR)]);
         // One of unknown place was perhaps never there, and one that has left is gone for ever.
-        unwatched.begin();
+        unwatched.begin(way, 0.0, |_| false);
         assert_eq!(unwatched.end(way, 0.0), closed(1, near));
         assert_eq!(froms(&mut unwatched), [Some(near), Some(FAR)]);
         assert_eq!(unwatched.entries.len(), 2);
-        unwatched.begin();
+        unwatched.begin(way, 0.0, |_| false);
         unwatched.close(3, PATH, Place::OnFoot, FAR);
         assert_eq!(unwatched.end(way, past), None);
         assert_eq!(froms(&mut unwatched), [None, Some(FAR)]);

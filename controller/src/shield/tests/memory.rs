@@ -1,5 +1,6 @@
 //! What survives from one call to the next: plans, tracks that are missing or new, times that are wrong.
 
+use super::without_room::numbered;
 use super::*;
 use crate::kinematics::{self, advance};
 
@@ -194,6 +195,31 @@ fn one_without_room_leaves_a_plan_that_passes_it_in_time() {
             assert!(decision.plan.is_some(), "{decision:?}");
         }
     }
+}
+
+/// One is watched, 16 are remembered with their bounds, and of one the number.
+#[test]
+fn zones_of_one_beyond_the_room_to_remember_stay_closed_while_it_is_missing() {
+    let site = crowded();
+    let mut run = Run::<Sound, 1>::with_rules(&site, WORST);
+    let own = ego(&site, [20.0, 0.0]);
+    let mut tracks: std::vec::Vec<_> = (10..27_u8)
+        .map(|i| numbered(&site, i.into(), 3, [2.0 * f32::from(i - 10), 0.0]))
+        .collect();
+    let mut nearest = |seen: &[Track], forgotten: bool| {
+        if forgotten {
+            run.shield.forget(99);
+        }
+        run.observe(own, seen, 0.0).unwatched
+    };
+    let known = nearest(&tracks, false);
+    tracks.push(numbered(&site, 99, 1, [1.0, 0.0]));
+    assert_eq!(nearest(&tracks, false), Some(99));
+    for _ in 0..3 {
+        assert_eq!(nearest(&tracks[..17], false), Some(99));
+    }
+    assert_eq!(nearest(&tracks, false), Some(99));
+    assert_eq!(nearest(&tracks[..17], true), known);
 }
 
 #[test]
