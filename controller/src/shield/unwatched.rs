@@ -108,23 +108,37 @@ impl Unwatched {
 
     /// A new observation begins, with tracks of the numbers for which `seen` is true, and an ego at `ego` (m). Nobody has
     /// been noted yet.
-    pub(super) fn begin(&mut self, way: Way<'_>, ego: f32, seen: impl Fn(u16) -> bool) {
+    pub(super) fn begin(&mut self, way: Way<'_>, ego: f32, seen: &dyn Fn(u16) -> bool) {
         self.entries.iter_mut().for_each(|entry| entry.seen = false);
-        self.numbers.retain(|&number| !seen(number));
-        if self.numbers.is_empty() && !self.nameless {
-            self.beyond = None;
+        if self.beyond.is_some() {
+            self.leave_closed(way, ego, seen);
         }
-        // As long as one of them is missing, what is closed stays so; past it, whatever comes next.
-        self.beyond = self.beyond.and_then(|Closed { number, from }| {
-            let next = |conflict| first_zone_from(conflict, ego, from);
-            let ahead = way.conflicts().filter_map(|(_, conflict)| next(conflict));
-            let from = ahead.reduce(Real::min)?;
-            Some(Closed { number, from })
-        });
+    }
+
+    /// As long as one of those beyond the room is missing, what is closed stays so; once the ego is past it, whatever
+    /// comes next.
+    // Rare, and not inlined: it takes flash.
+    #[cold]
+    #[inline(never)]
+    fn leave_closed(&mut self, way: Way<'_>, ego: f32, seen: &dyn Fn(u16) -> bool) {
+        self.drop_numbers(seen);
+        let missing = !self.numbers.is_empty() || self.nameless;
+        self.beyond = match self.beyond {
+            Some(closed) if missing && closed.from <= ego => {
+                let next = anybody(way, ego, closed.from);
+                next.map(|from| Closed { from, ..closed })
+            }
+            beyond => beyond.filter(|_| missing),
+        };
         if self.beyond.is_none() {
             self.numbers.clear();
             self.nameless = false;
         }
+    }
+
+    #[inline(never)]
+    fn drop_numbers(&mut self, gone: &dyn Fn(u16) -> bool) {
+        self.numbers.retain(|&number| !gone(number));
     }
 
     /// One is seen whose first zone begins at `from` (m).
@@ -195,7 +209,7 @@ impl Unwatched {
     /// Nobody with this number is there.
     pub(super) fn forget(&mut self, number: u16) {
         self.entries.retain(|entry| entry.number != number);
-        self.numbers.retain(|&it| it != number);
+        self.drop_numbers(&|it| it == number);
     }
 
     /// Whether `stays` is true for everybody.
@@ -238,11 +252,13 @@ pub(super) fn sooner(first: Option<Closed>, other: Closed) -> Option<Closed> {
 
 /// Where (m) the ego, at `ego` (m), enters the first zone that it has not passed.
 pub(super) fn first_zone(conflict: &RouteConflict, ego: f32) -> Option<f32> {
-    first_zone_from(conflict, ego, f32::NEG_INFINITY)
+    first_from(conflict, ego, -FAR)
 }
 
 /// The same of those that begin at `from` (m) or later.
-fn first_zone_from(conflict: &RouteConflict, ego: f32, from: f32) -> Option<f32> {
+// Not inlined: once in flash.
+#[inline(never)]
+fn first_from(conflict: &RouteConflict, ego: f32, from: f32) -> Option<f32> {
     let ahead = |zone: &&Zone| ego < zone.ego.to && from <= zone.ego.from;
     conflict
         .zones()
@@ -257,11 +273,18 @@ pub(super) fn unplaced(way: Way<'_>, path: PathId, class: Class, ego: f32) -> Op
     let known = way.path(path).is_some_and(|path| path.class() == class);
     match way.conflict(path).filter(|_| known) {
         Some(conflict) => first_zone(conflict, ego),
-        None => way
-            .conflicts()
-            .filter_map(|(_, conflict)| first_zone(conflict, ego))
-            .reduce(Real::min),
+        None => anybody(way, ego, -FAR),
     }
+}
+
+/// Where (m) the ego, at `ego` (m), enters the first zone with anybody that begins at `from` (m) or later.
+// Not inlined: once in flash.
+#[inline(never)]
+fn anybody(way: Way<'_>, ego: f32, from: f32) -> Option<f32> {
+    let zones = way.conflicts();
+    zones
+        .filter_map(|(_, conflict)| first_from(conflict, ego, from))
+        .reduce(Real::min)
 }
 
 #[cfg(test)]
@@ -296,7 +319,7 @@ mod tests {
         let mut unwatched = Unwatched::new();
         let mut from = |from, begin: bool| {
             if begin {
-                unwatched.begin(site.way(PathId::new(0)).unwrap(), 0.0, |_| true);
+                unwatched.begin(site.way(PathId::new(0)).unwrap(), 0.0, &|_| true);
             }
             unwatched.close(7, PATH, Place::OnFoot, from);
             assert_eq!(unwatched.entries.len(), 1);
@@ -323,7 +346,7 @@ mod tests {
         unwatched.placed(7, PATH).unwrap().holds = true;
         assert!(unwatched.open(7, PATH) && !unwatched.open(8, PATH));
         assert_eq!(unwatched.entries.len(), 2);
-        unwatched.begin(site().way(PathId::new(0)).unwrap(), 0.0, |_| true);
+        unwatched.begin(site().way(PathId::new(0)).unwrap(), 0.0, &|_| true);
         assert!(!unwatched.open(7, PATH));
         assert_eq!(unwatched.entries.len(), 1);
     }
@@ -349,7 +372,7 @@ mod tests {
         assert_eq!(close(25, 20.0), (16, Some((25, 20.0))));
         assert_eq!(close(26, FAR), (16, Some((25, 20.0))));
         assert!(unwatched.placed(20, PATH).is_none() && unwatched.placed(22, PATH).is_some());
-        unwatched.begin(site().way(PathId::new(0)).unwrap(), 0.0, |_| true);
+        unwatched.begin(site().way(PathId::new(0)).unwrap(), 0.0, &|_| true);
         assert_eq!(unwatched.beyond(), None);
     }
 
@@ -367,7 +390,7 @@ mod tests {
             unwatched
         };
         let begun = |mut unwatched: Unwatched, ego, seen: fn(u16) -> bool| {
-            unwatched.begin(way, ego, seen);
+            unwatched.begin(way, ego, &seen);
             unwatched.beyond().map(|it| (it.number, it.from))
         };
         let two = crowd(&[(20, near[0]), (21, far[0])]);
@@ -404,12 +427,12 @@ mod tests {
         (0..40).for_each(|number| unwatched.close(number, PATH, Place::OnFoot, near[0]));
         assert!(!unwatched.nameless);
         let mut seen = unwatched.clone();
-        seen.begin(way, 0.0, |_| true);
+        seen.begin(way, 0.0, &|_| true);
         assert_eq!(seen.beyond(), None);
         unwatched.close(40, PATH, Place::OnFoot, near[0]);
-        unwatched.begin(way, 0.0, |_| true);
+        unwatched.begin(way, 0.0, &|_| true);
         assert_eq!(unwatched.beyond().map(|it| it.from), Some(near[0]));
-        unwatched.begin(way, far[1], |_| true);
+        unwatched.begin(way, far[1], &|_| true);
         assert_eq!((unwatched.beyond(), unwatched.nameless), (None, false));
     }
 
@@ -469,11 +492,11 @@ mod tests {
         assert_eq!(unwatched.end(way, 0.0), closed(2, 4.0));
         assert_eq!(froms(&mut unwatched), [Some(5.0), Some(FAR)]);
         // One of unknown place was perhaps never there, and one that has left is gone for ever.
-        unwatched.begin(way, 0.0, |_| false);
+        unwatched.begin(way, 0.0, &|_| false);
         assert_eq!(unwatched.end(way, 0.0), closed(1, near));
         assert_eq!(froms(&mut unwatched), [Some(near), Some(FAR)]);
         assert_eq!(unwatched.entries.len(), 2);
-        unwatched.begin(way, 0.0, |_| false);
+        unwatched.begin(way, 0.0, &|_| false);
         unwatched.close(3, PATH, Place::OnFoot, FAR);
         assert_eq!(unwatched.end(way, past), None);
         assert_eq!(froms(&mut unwatched), [None, Some(FAR)]);

@@ -33,13 +33,7 @@ impl Band {
             return;
         }
         self.widen(behind.straight(), ahead.straight());
-        ahead
-            .turns()
-            .for_each(|turn| self.widen(behind.straight(), &turn));
-        behind.turns().for_each(|turn| {
-            self.widen(&turn, ahead.straight());
-            ahead.turns().for_each(|other| self.widen(&turn, &other));
-        });
+        behind.turns_with(ahead, &mut |behind, ahead| self.widen(behind, ahead));
     }
 
     fn widen(&mut self, behind: &Motion, ahead: &Motion) {

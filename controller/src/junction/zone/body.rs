@@ -229,6 +229,21 @@ impl Stage {
             })
     }
 
+    /// Calls `meet` for each pair of motions of two stages of which one turns at least.
+    // Not generic: once in flash.
+    #[inline(never)]
+    pub(super) fn turns_with(&self, other: &Self, meet: &mut dyn FnMut(&Motion, &Motion)) {
+        for turn in other.turns() {
+            meet(&self.straight, &turn);
+        }
+        for turn in self.turns() {
+            meet(&turn, &other.straight);
+            for other in other.turns() {
+                meet(&turn, &other);
+            }
+        }
+    }
+
     /// Whether there is any.
     pub(super) fn turns_at_all(&self) -> bool {
         self.askew > 0.0

@@ -195,11 +195,7 @@ fn meet_stages(patches: &mut [Option<Patch>; MAX_ZONES], a: &Stage, b: &Stage) {
     if !turning || around.is_some_and(|cell| covered(patches, &cell)) {
         return;
     }
-    b.turns().for_each(|turn| add(patches, a.straight(), &turn));
-    a.turns().for_each(|turn| {
-        add(patches, &turn, b.straight());
-        b.turns().for_each(|other| add(patches, &turn, &other));
-    });
+    a.turns_with(b, &mut |a, b| add(patches, a, b));
 }
 
 /// Adds what is occupied in two motions, unless that is known to change nothing.
