@@ -249,7 +249,7 @@ fn no_proposal_exceeds_the_profile() {
 
 #[test]
 fn an_approach_fits_its_share_of_the_memory() {
-    let share = 3072 + if cfg!(feature = "estimates") { 192 } else { 0 };
+    let share = 3136 + if cfg!(feature = "estimates") { 192 } else { 0 };
     let size = size_of::<Approach<'_, '_>>();
     assert!(size <= share, "{size}");
 }
