@@ -128,8 +128,7 @@ impl<const N: usize> Tracks<N> {
             other.news = News::None;
             other.fresh = false;
         }
-        let there = |number| seen.tracks.iter().any(|track| track.number == number);
-        self.unwatched.begin(way, ego.least, &there);
+        self.unwatched.begin(way, ego.least, seen.tracks);
         self.hidden.begin();
         self.coast::<R>(contract, now);
         // Who is known comes first, so that a newcomer finds as much room as there is.

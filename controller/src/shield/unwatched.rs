@@ -5,6 +5,7 @@ use super::precedence::ZoneSet;
 use crate::instant::Instant;
 use crate::junction::zone::{FAR, Zone};
 use crate::junction::{Class, PathId, RouteConflict, Way};
+use crate::observation::Track;
 use crate::real::Real;
 use heapless::Vec;
 
@@ -12,7 +13,7 @@ use heapless::Vec;
 const ROOM: usize = 16;
 
 /// Of so many more, their numbers.
-const MORE_ROOM: usize = 24;
+const MORE_ROOM: usize = 20;
 
 /// Zones that the ego must not enter, because somebody who is not watched may be there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,7 +78,7 @@ pub(super) struct Unwatched {
     /// The first zones of those whom there is no room to remember with their bounds.
     beyond: Option<Closed>,
     /// Their numbers.
-    numbers: Vec<u16, MORE_ROOM>,
+    numbers: Vec<u16, MORE_ROOM, u8>,
     /// There were more, of whom not even the numbers are known.
     nameless: bool,
 }
@@ -106,12 +107,11 @@ impl Unwatched {
         self.beyond
     }
 
-    /// A new observation begins, with tracks of the numbers for which `seen` is true, and an ego at `ego` (m). Nobody has
-    /// been noted yet.
-    pub(super) fn begin(&mut self, way: Way<'_>, ego: f32, seen: &dyn Fn(u16) -> bool) {
+    /// A new observation of `tracks` begins, with an ego at `ego` (m). Nobody has been noted yet.
+    pub(super) fn begin(&mut self, way: Way<'_>, ego: f32, tracks: &[Track]) {
         self.entries.iter_mut().for_each(|entry| entry.seen = false);
         if self.beyond.is_some() {
-            self.leave_closed(way, ego, seen);
+            self.leave_closed(way, ego, tracks);
         }
     }
 
@@ -120,8 +120,9 @@ impl Unwatched {
     // Rare, and not inlined: it takes flash.
     #[cold]
     #[inline(never)]
-    fn leave_closed(&mut self, way: Way<'_>, ego: f32, seen: &dyn Fn(u16) -> bool) {
-        self.drop_numbers(seen);
+    fn leave_closed(&mut self, way: Way<'_>, ego: f32, tracks: &[Track]) {
+        let seen = |number| tracks.iter().any(|track| track.number == number);
+        self.numbers.retain(|&number| !seen(number));
         let missing = !self.numbers.is_empty() || self.nameless;
         self.beyond = match self.beyond {
             Some(closed) if missing && closed.from <= ego => {
@@ -134,11 +135,6 @@ impl Unwatched {
             self.numbers.clear();
             self.nameless = false;
         }
-    }
-
-    #[inline(never)]
-    fn drop_numbers(&mut self, gone: &dyn Fn(u16) -> bool) {
-        self.numbers.retain(|&number| !gone(number));
     }
 
     /// One is seen whose first zone begins at `from` (m).
@@ -209,7 +205,7 @@ impl Unwatched {
     /// Nobody with this number is there.
     pub(super) fn forget(&mut self, number: u16) {
         self.entries.retain(|entry| entry.number != number);
-        self.drop_numbers(&|it| it == number);
+        self.numbers.retain(|&it| it != number);
     }
 
     /// Whether `stays` is true for everybody.
@@ -292,6 +288,7 @@ mod tests {
     use super::*;
     use crate::geometry::{Footprint, Point};
     use crate::junction::{Junction, Route};
+    use crate::observation::Vehicle;
 
     const PATH: PathId = PathId::new(1);
 
@@ -319,7 +316,7 @@ mod tests {
         let mut unwatched = Unwatched::new();
         let mut from = |from, begin: bool| {
             if begin {
-                unwatched.begin(site.way(PathId::new(0)).unwrap(), 0.0, &|_| true);
+                unwatched.begin(site.way(PathId::new(0)).unwrap(), 0.0, &all());
             }
             unwatched.close(7, PATH, Place::OnFoot, from);
             assert_eq!(unwatched.entries.len(), 1);
@@ -346,7 +343,7 @@ mod tests {
         unwatched.placed(7, PATH).unwrap().holds = true;
         assert!(unwatched.open(7, PATH) && !unwatched.open(8, PATH));
         assert_eq!(unwatched.entries.len(), 2);
-        unwatched.begin(site().way(PathId::new(0)).unwrap(), 0.0, &|_| true);
+        unwatched.begin(site().way(PathId::new(0)).unwrap(), 0.0, &all());
         assert!(!unwatched.open(7, PATH));
         assert_eq!(unwatched.entries.len(), 1);
     }
@@ -372,7 +369,7 @@ mod tests {
         assert_eq!(close(25, 20.0), (16, Some((25, 20.0))));
         assert_eq!(close(26, FAR), (16, Some((25, 20.0))));
         assert!(unwatched.placed(20, PATH).is_none() && unwatched.placed(22, PATH).is_some());
-        unwatched.begin(site().way(PathId::new(0)).unwrap(), 0.0, &|_| true);
+        unwatched.begin(site().way(PathId::new(0)).unwrap(), 0.0, &all());
         assert_eq!(unwatched.beyond(), None);
     }
 
@@ -389,33 +386,30 @@ mod tests {
             }
             unwatched
         };
-        let begun = |mut unwatched: Unwatched, ego, seen: fn(u16) -> bool| {
-            unwatched.begin(way, ego, &seen);
+        let begun = |mut unwatched: Unwatched, ego, seen: &[u16]| {
+            unwatched.begin(way, ego, &tracks(seen));
             unwatched.beyond().map(|it| (it.number, it.from))
         };
         let two = crowd(&[(20, near[0]), (21, far[0])]);
         // Either of them counts where the nearer one was.
-        assert_eq!(begun(two.clone(), 0.0, |_| false), Some((20, near[0])));
-        assert_eq!(begun(two.clone(), 0.0, |it| it != 21), Some((20, near[0])));
-        assert_eq!(begun(two.clone(), 0.0, |_| true), None);
+        assert_eq!(begun(two.clone(), 0.0, &[]), Some((20, near[0])));
+        assert_eq!(begun(two.clone(), 0.0, &[20]), Some((20, near[0])));
+        assert_eq!(begun(two.clone(), 0.0, &[20, 21]), None);
         // The ego passes the one zone, then the other.
-        assert_eq!(
-            begun(two.clone(), near[1] - 0.1, |_| false),
-            Some((20, near[0]))
-        );
-        assert_eq!(begun(two.clone(), near[1], |_| false), Some((20, far[0])));
-        assert_eq!(begun(two.clone(), far[1], |_| false), None);
+        assert_eq!(begun(two.clone(), near[1] - 0.1, &[]), Some((20, near[0])));
+        assert_eq!(begun(two.clone(), near[1], &[]), Some((20, far[0])));
+        assert_eq!(begun(two.clone(), far[1], &[]), None);
         // Known not to be there.
         let mut forgotten = two.clone();
         assert!(forgotten.knows(21));
         forgotten.forget(21);
         assert!(!forgotten.knows(21));
-        assert_eq!(begun(forgotten.clone(), 0.0, |it| it == 20), None);
-        assert_eq!(begun(forgotten, 0.0, |_| false), Some((20, near[0])));
+        assert_eq!(begun(forgotten.clone(), 0.0, &[20]), None);
+        assert_eq!(begun(forgotten, 0.0, &[]), Some((20, near[0])));
         // One whose place is not known was perhaps never there.
         let mut unplaced = crowd(&[]);
         unplaced.close(22, PATH, Place::Unknown, near[0]);
-        assert_eq!(begun(unplaced, 0.0, |_| false), None);
+        assert_eq!(begun(unplaced, 0.0, &[]), None);
     }
 
     #[test]
@@ -424,15 +418,15 @@ mod tests {
         let way = site.way(PathId::new(0)).unwrap();
         let [near, far] = [1, 2].map(|path| zone(way, path));
         let mut unwatched = Unwatched::new();
-        (0..40).for_each(|number| unwatched.close(number, PATH, Place::OnFoot, near[0]));
+        (0..36).for_each(|number| unwatched.close(number, PATH, Place::OnFoot, near[0]));
         assert!(!unwatched.nameless);
         let mut seen = unwatched.clone();
-        seen.begin(way, 0.0, &|_| true);
+        seen.begin(way, 0.0, &all());
         assert_eq!(seen.beyond(), None);
-        unwatched.close(40, PATH, Place::OnFoot, near[0]);
-        unwatched.begin(way, 0.0, &|_| true);
+        unwatched.close(36, PATH, Place::OnFoot, near[0]);
+        unwatched.begin(way, 0.0, &all());
         assert_eq!(unwatched.beyond().map(|it| it.from), Some(near[0]));
-        unwatched.begin(way, far[1], &|_| true);
+        unwatched.begin(way, far[1], &all());
         assert_eq!((unwatched.beyond(), unwatched.nameless), (None, false));
     }
 
@@ -451,6 +445,21 @@ mod tests {
     }
 
     /// Where the ego is in the zone of path `path`: from, to.
+    /// Tracks of these numbers, wherever they are.
+    fn tracks(numbers: &[u16]) -> std::vec::Vec<Track> {
+        let vehicle = Vehicle {
+            s: 1.0,
+            speed: 0.0,
+            pose: site().polyline(PATH).unwrap().pose(1.0),
+        };
+        let on = |&number: &u16| Track::on(number, PATH, vehicle);
+        numbers.iter().map(on).collect()
+    }
+
+    fn all() -> std::vec::Vec<Track> {
+        tracks(&(0..100).collect::<std::vec::Vec<_>>())
+    }
+
     fn zone(way: Way<'_>, path: u8) -> [f32; 2] {
         let conflict = way.conflict(PathId::new(path)).unwrap();
         let Zone { ego, .. } = *conflict.zones().next().unwrap();
@@ -492,11 +501,11 @@ mod tests {
         assert_eq!(unwatched.end(way, 0.0), closed(2, 4.0));
         assert_eq!(froms(&mut unwatched), [Some(5.0), Some(FAR)]);
         // One of unknown place was perhaps never there, and one that has left is gone for ever.
-        unwatched.begin(way, 0.0, &|_| false);
+        unwatched.begin(way, 0.0, &[]);
         assert_eq!(unwatched.end(way, 0.0), closed(1, near));
         assert_eq!(froms(&mut unwatched), [Some(near), Some(FAR)]);
         assert_eq!(unwatched.entries.len(), 2);
-        unwatched.begin(way, 0.0, &|_| false);
+        unwatched.begin(way, 0.0, &[]);
         unwatched.close(3, PATH, Place::OnFoot, FAR);
         assert_eq!(unwatched.end(way, past), None);
         assert_eq!(froms(&mut unwatched), [None, Some(FAR)]);
